@@ -1,0 +1,49 @@
+#!/usr/bin/env bash
+# Installs the Debian 12 packages that linefeed needs. Idempotent: what is there already is left alone, and when nothing is missing apt
+# is not called at all. Asks nothing; works as root, or through sudo.
+#
+# usage: deploy/dependencies.sh [build] [test] [lint] [fuzz]     (without arguments: build)
+set -euo pipefail
+
+build_packages=(cmake ninja-build g++ libboost1.81-dev libsqlite3-dev sqlite3 zlib1g-dev libssl-dev libcli11-dev nlohmann-json3-dev)
+test_packages=(libgtest-dev libgmock-dev python3 gcovr)
+lint_packages=(clang-format-14 clang-tidy-14)
+fuzz_packages=(clang-14 libclang-rt-14-dev)
+
+fail() {
+    echo "dependencies.sh: $*" >&2
+    exit 1
+}
+
+wanted=()
+for group in "${@:-build}"; do
+    case "$group" in
+        build) wanted+=("${build_packages[@]}") ;;
+        test) wanted+=("${test_packages[@]}") ;;
+        lint) wanted+=("${lint_packages[@]}") ;;
+        fuzz) wanted+=("${fuzz_packages[@]}") ;;
+        *) fail "there is no group \"$group\": build, test, lint, fuzz" ;;
+    esac
+done
+
+command -v dpkg-query > /dev/null || fail "this is not Debian: install the equivalents of: ${wanted[*]}"
+
+missing=()
+for package in "${wanted[@]}"; do
+    status=$(dpkg-query --show --showformat='${db:Status-Status}\n' "$package" 2> /dev/null | head -n 1) || true
+    [[ $status == installed ]] || missing+=("$package")
+done
+if [[ ${#missing[@]} -eq 0 ]]; then
+    exit 0
+fi
+
+as_root=()
+if [[ $EUID -ne 0 ]]; then
+    command -v sudo > /dev/null || fail "root or sudo is needed to install: ${missing[*]}"
+    as_root=(sudo)
+fi
+apt=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -o Dpkg::Use-Pty=0 -qq)
+
+echo "installing: ${missing[*]}"
+"${apt[@]}" update < /dev/null || fail "apt-get update failed"
+"${apt[@]}" install --yes --no-install-recommends "${missing[@]}" < /dev/null > /dev/null || fail "cannot install: ${missing[*]}"

@@ -1,0 +1,228 @@
+// The command line of linefeed. CLI11 stays in this file.
+#include "cli/ledger_command.hpp"
+#include "cli/print_command.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <cstdlib>
+#include <iostream>
+
+namespace {
+
+using linefeed::cli::ExitCode;
+using linefeed::cli::InDoubtPolicy;
+using linefeed::cli::JobsOptions;
+using linefeed::cli::LedgerOptions;
+using linefeed::cli::PrintOptions;
+
+std::filesystem::path default_spool() {
+    if (const char* state = std::getenv("XDG_STATE_HOME"); state != nullptr && *state != '\0') {
+        return std::filesystem::path{state} / "linefeed" / "spool.db";
+    }
+    if (const char* home = std::getenv("HOME"); home != nullptr && *home != '\0') {
+        return std::filesystem::path{home} / ".local" / "state" / "linefeed" / "spool.db";
+    }
+    return "linefeed-spool.db";
+}
+
+std::string profile_names() {
+    std::string names;
+    for (const auto& profile : linefeed::protocol::profiles) {
+        names += (names.empty() ? "" : ", ") + std::string{profile.name};
+    }
+    return names;
+}
+
+/// Texts of options that need more than CLI11's conversion.
+struct RawPrintOptions {
+    std::string delimiter;
+    std::string profile{linefeed::protocol::profiles.front().name};
+    std::string output{"text"};
+    std::string in_doubt{"ask"};
+    bool no_header = false;
+    std::optional<int> orientation;
+};
+
+void add_print(CLI::App& app, PrintOptions& options, RawPrintOptions& raw) {
+    CLI::App& print =
+        *app.add_subcommand("print", "Print a CSV file or an SQLite database, record by record, in the foreground");
+    print.footer("The same command again continues after the last printed record. Ctrl-C stops the line cleanly.\n"
+                 "Exit codes: 0 done, 2 usage, 3 printer not reachable, 4 stopped before the end (can be resumed),\n"
+                 "5 input rejected, 6 records in doubt (an operator must decide), 1 anything else.");
+    print.add_option("FILE", options.file, "CSV file or SQLite database")->required();
+    print.add_option("--printer", options.printer, "Address of the printer, tcp://HOST:PORT");
+    print
+        .add_option("--columns", options.columns,
+                    "Columns to print, by name or number from 1, separated by commas; default: all")
+        ->delimiter(',');
+    print.add_option("--table", options.table, "Table or view of the SQLite database");
+    print.add_option("--query", options.query, "SELECT statement that gives the records of the SQLite database");
+    print.add_option("--delimiter", raw.delimiter,
+                     "Separator of the CSV file: one character, or tab; default: found out from the first line");
+    print.add_flag("--no-header", raw.no_header, "The first line of the CSV file is a record, not column names");
+    print.add_flag("--skip-bad", options.skip_bad,
+                   "Leave rows out that cannot be printed, instead of refusing the file");
+    print
+        .add_option("--encoding", options.encodings,
+                    "What the printer's font wants: latin1 (default), windows-1252 or unicode-hex; COLUMN=ENCODING for "
+                    "one column")
+        ->delimiter(',');
+    print.add_option("--profile", raw.profile, "Firmware profile: " + profile_names())->capture_default_str();
+    print.add_option("--base", options.base, "Record k has number BASE + k")->capture_default_str();
+    print.add_flag("--mirrored", options.properties.mirrored, "Print every record mirrored");
+    print.add_option("--orientation", raw.orientation, "Turn every record by 0, 90, 180 or 270 degrees")
+        ->check(CLI::IsMember({0, 90, 180, 270}));
+    print.add_option("--from", options.from, "Number of the first record to print; default: the first of the file");
+    print.add_option("--to", options.to, "Number of the last record to print; default: the last of the file");
+    print.add_option("--spool", options.spool, "Database of jobs and the print ledger")->capture_default_str();
+    print.add_flag("--dry-run", options.dry_run, "Check everything and show the first frames; print nothing");
+    print.add_flag("--new-job", options.new_job, "Print the file as a new job, even if it was printed before");
+    print.add_flag("--open-nozzle", options.open_nozzle, "Open the nozzle if it is closed (takes 30 to 60 s)");
+    print
+        .add_option("--acknowledge", options.acknowledge,
+                    "Error numbers that may be acknowledged before the start, separated by commas")
+        ->delimiter(',')
+        ->expected(0, 16);
+    print.add_option("--last-printed", options.operator_word.last_printed,
+                     "Number or text of the record on the last product: settles records in doubt");
+    print
+        .add_option("--in-doubt", raw.in_doubt,
+                    "Records in doubt: ask (stop with exit code 6), skip (do not print them again) or reprint")
+        ->capture_default_str()
+        ->check(CLI::IsMember({"ask", "skip", "reprint"}));
+    print.add_option("--connect-timeout", options.connect_timeout_ms, "Milliseconds to wait for a connection")
+        ->capture_default_str()
+        ->check(CLI::Range(1, 600000));
+    print.add_option("--reply-timeout", options.reply_timeout_ms, "Milliseconds to wait for an answer of the printer")
+        ->capture_default_str()
+        ->check(CLI::Range(1, 600000));
+    print.add_option("-o,--output", raw.output, "text or json")
+        ->capture_default_str()
+        ->check(CLI::IsMember({"text", "json"}));
+}
+
+/// What is wrong with the options, or nothing.
+std::string finish_options(PrintOptions& options, const RawPrintOptions& raw) {
+    options.json = raw.output == "json";
+    options.header = !raw.no_header;
+    if (raw.delimiter == "tab" || raw.delimiter == "\\t") {
+        options.delimiter = '\t';
+    } else if (raw.delimiter.size() == 1) {
+        options.delimiter = raw.delimiter.front();
+    } else if (!raw.delimiter.empty()) {
+        return "--delimiter: expected one character, or tab";
+    }
+    const auto profile = linefeed::protocol::profile_by_name(raw.profile);
+    if (!profile) {
+        return "--profile: \"" + raw.profile + "\" is not known; one of: " + profile_names();
+    }
+    options.profile = *profile;
+    if (raw.orientation) {
+        options.properties.orientation = static_cast<linefeed::protocol::Orientation>(*raw.orientation / 90);
+    }
+    options.operator_word.policy = raw.in_doubt == "skip"      ? InDoubtPolicy::skip
+                                   : raw.in_doubt == "reprint" ? InDoubtPolicy::reprint
+                                                               : InDoubtPolicy::ask;
+    if (options.operator_word.policy != InDoubtPolicy::ask && !options.operator_word.last_printed.empty()) {
+        return "--in-doubt and --last-printed exclude each other";
+    }
+    if (options.table && options.query) {
+        return "--table and --query exclude each other";
+    }
+    if (options.printer.empty() && !options.dry_run) {
+        return "--printer tcp://HOST:PORT is required";
+    }
+    return {};
+}
+
+struct RawLedgerOptions {
+    std::string records;
+    std::string output{"text"};
+};
+
+void add_output(CLI::App& command, std::string& output) {
+    command.add_option("-o,--output", output, "text or json")
+        ->capture_default_str()
+        ->check(CLI::IsMember({"text", "json"}));
+}
+
+CLI::App& add_jobs(CLI::App& app, JobsOptions& options, std::string& output) {
+    CLI::App& jobs = *app.add_subcommand("jobs", "List the jobs in the spool and how far they are");
+    jobs.add_option("--spool", options.spool, "Database of jobs and the print ledger")->capture_default_str();
+    add_output(jobs, output);
+    return jobs;
+}
+
+CLI::App& add_ledger(CLI::App& app, LedgerOptions& options, RawLedgerOptions& raw) {
+    CLI::App& ledger =
+        *app.add_subcommand("ledger", "Show what is known about the records of a job, and on whose word");
+    ledger.add_option("JOB", options.job, "Number of the job, see linefeed jobs")->required();
+    ledger.add_option("--records", raw.records, "One line for each of these records: N or N-M");
+    ledger.add_flag("--verify", options.verify, "Check the hash chain of the ledger");
+    ledger
+        .add_option("--export", options.export_format,
+                    "Every issued record with fields, state, time, run and evidence: csv or json (lines)")
+        ->check(CLI::IsMember({"csv", "json"}));
+    ledger.add_option("--spool", options.spool, "Database of jobs and the print ledger")->capture_default_str();
+    add_output(ledger, raw.output);
+    return ledger;
+}
+
+ExitCode usage_error(const std::string& problem) {
+    std::cerr << "linefeed: " << problem << '\n';
+    return ExitCode::usage;
+}
+
+ExitCode run(int argc, char** argv) {
+    CLI::App app{"linefeed streams the records of a database into the mailing FIFO of Leibinger JET printers: every "
+                 "record once, in order."};
+    app.set_version_flag("--version", "linefeed " LINEFEED_VERSION);
+    app.require_subcommand(1);
+    PrintOptions print;
+    JobsOptions jobs;
+    LedgerOptions ledger;
+    print.spool = jobs.spool = ledger.spool = default_spool();
+    RawPrintOptions raw_print;
+    RawLedgerOptions raw_ledger;
+    std::string jobs_output{"text"};
+    add_print(app, print, raw_print);
+    const CLI::App& jobs_command = add_jobs(app, jobs, jobs_output);
+    const CLI::App& ledger_command = add_ledger(app, ledger, raw_ledger);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::Success& success) {
+        return static_cast<ExitCode>(app.exit(success));
+    } catch (const CLI::ParseError& error) {
+        return usage_error(std::string{error.what()} +
+                           " (linefeed --help, or linefeed COMMAND --help, shows the options)");
+    }
+    if (jobs_command.parsed()) {
+        jobs.json = jobs_output == "json";
+        return linefeed::cli::run_jobs(jobs);
+    }
+    if (ledger_command.parsed()) {
+        ledger.json = raw_ledger.output == "json";
+        if (!raw_ledger.records.empty()) {
+            ledger.records = linefeed::cli::parse_record_range(raw_ledger.records);
+            if (!ledger.records) {
+                return usage_error("--records " + raw_ledger.records + ": expected N or N-M");
+            }
+        }
+        return linefeed::cli::run_ledger(ledger);
+    }
+    if (const std::string problem = finish_options(print, raw_print); !problem.empty()) {
+        return usage_error(problem);
+    }
+    return linefeed::cli::run_print(print);
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    try {
+        return static_cast<int>(run(argc, argv));
+    } catch (const std::exception& exception) {
+        std::cerr << "linefeed: " << exception.what() << '\n';
+        return static_cast<int>(ExitCode::other);
+    }
+}

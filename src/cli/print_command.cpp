@@ -1,0 +1,286 @@
+#include "cli/print_command.hpp"
+
+#include "cli/job_selection.hpp"
+#include "cli/print_report.hpp"
+#include "cli/progress_view.hpp"
+#include "cli/signals.hpp"
+#include "cli/wall_time.hpp"
+#include "daemon/job_run.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <chrono>
+#include <iostream>
+#include <unistd.h>
+
+namespace linefeed::cli {
+
+namespace {
+
+/// A spool that is gone with the object: for --dry-run.
+class TemporaryDirectory {
+public:
+    TemporaryDirectory()
+        : path_(std::filesystem::temp_directory_path() / ("linefeed-" + std::to_string(::getpid()))) {}
+    ~TemporaryDirectory() {
+        std::error_code ignored;
+        std::filesystem::remove_all(path_, ignored);
+    }
+    TemporaryDirectory(const TemporaryDirectory&) = delete;
+    TemporaryDirectory& operator=(const TemporaryDirectory&) = delete;
+    [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+private:
+    std::filesystem::path path_;
+};
+
+class PrintCommand {
+public:
+    explicit PrintCommand(const PrintOptions& options)
+        : options_(options)
+        , view_(options.json) {}
+
+    Result<ExitCode> run();
+
+private:
+    Result<spool::Job> find_job(spool::Spool& spool);
+    [[nodiscard]] Result<RecordRange> wanted_range(const spool::Job& job) const;
+    Result<ExitCode> dry_run(spool::Spool& spool, const spool::Job& job, RecordRange wanted) const;
+    Result<ExitCode> print(spool::Spool& spool, const spool::Job& job, RecordRange wanted,
+                           const daemon::JobRunSettings& settings);
+    void watch(daemon::JobRun& run, RecordRange wanted);
+    [[nodiscard]] daemon::JobRunSettings run_settings() const;
+
+    const PrintOptions& options_;
+    SignalWatch signals_;
+    ProgressView view_;
+    bool interrupted_ = false;
+};
+
+daemon::JobRunSettings PrintCommand::run_settings() const {
+    daemon::JobRunSettings settings;
+    settings.session.escapes = options_.profile.escapes;
+    settings.session.reply_timeout = std::chrono::milliseconds{options_.reply_timeout_ms};
+    settings.session.feeder.open_nozzle = options_.open_nozzle;
+    for (const std::uint32_t code : options_.acknowledge) {
+        settings.session.feeder.acknowledge.push_back(code);
+    }
+    settings.connect_timeout = std::chrono::milliseconds{options_.connect_timeout_ms};
+    return settings;
+}
+
+Result<ExitCode> PrintCommand::run() {
+    daemon::JobRunSettings settings = run_settings();
+    if (!options_.dry_run) {
+        const auto address = link::parse_printer_address(options_.printer);
+        if (!address) {
+            return address.error();
+        }
+        settings.printer = *address;
+    }
+    const TemporaryDirectory temporary;
+    const std::filesystem::path path = options_.dry_run ? temporary.path() / "spool.db" : options_.spool;
+    auto spool = spool::Spool::open(path, {wall_clock_ns, {}});
+    if (!spool) {
+        return spool.error();
+    }
+    const auto job = find_job(*spool);
+    if (!job) {
+        return job.error();
+    }
+    const auto wanted = wanted_range(*job);
+    if (!wanted) {
+        return wanted.error();
+    }
+    if (options_.dry_run) {
+        return dry_run(*spool, *job, *wanted);
+    }
+    const auto endpoints = link::resolve(settings.printer);
+    if (!endpoints) {
+        return endpoints.error();
+    }
+    settings.endpoints = *endpoints;
+    return print(*spool, *job, *wanted, settings);
+}
+
+Result<spool::Job> PrintCommand::find_job(spool::Spool& spool) {
+    const auto begun = std::chrono::steady_clock::now();
+    auto selection = select_job(options_, spool, [&](const intake::ImportReport& report, double fraction) {
+        const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+        view_.update({"importing", fraction, std::to_string(report.rows) + " rows",
+                      static_cast<double>(report.rows) / std::max(seconds, 1e-3),
+                      fraction > 0 ? std::optional{seconds / fraction - seconds} : std::nullopt});
+        interrupted_ = interrupted_ || signals_.take() > 0;
+        return !interrupted_;
+    });
+    view_.finish();
+    if (!selection) {
+        return interrupted_ ? Failure{FailureKind::stopped,
+                                      "interrupted during the import: nothing is imported, nothing is printed"}
+                            : selection.error();
+    }
+    if (selection->report.bad_rows > 0) {
+        show_bad_rows(selection->report, options_.file.string(), !selection->job, options_.json);
+    }
+    if (!selection->job) {
+        return Failure{FailureKind::input, {}}; // said already
+    }
+    if (selection->imported && !options_.json) {
+        view_.message("imported " + std::to_string(selection->job->records.count().value()) + " records from " +
+                      printable(options_.file.string()) + " as job " +
+                      std::to_string(static_cast<std::int64_t>(selection->job->id)));
+    }
+    return *selection->job;
+}
+
+Result<RecordRange> PrintCommand::wanted_range(const spool::Job& job) const {
+    const RecordNumber from = options_.from ? RecordNumber{*options_.from} : job.records.first();
+    const RecordNumber to = options_.to ? RecordNumber{*options_.to} : job.records.last();
+    const auto records =
+        std::to_string(job.records.first().value()) + " to " + std::to_string(job.records.last().value());
+    if (!job.records.contains(from)) {
+        return Failure{FailureKind::usage,
+                       "--from " + std::to_string(from.value()) + ": the file has the records " + records};
+    }
+    if (!job.records.contains(to)) {
+        return Failure{FailureKind::usage,
+                       "--to " + std::to_string(to.value()) + ": the file has the records " + records};
+    }
+    if (to < from) {
+        return Failure{FailureKind::usage, "--to lies before --from"};
+    }
+    return RecordRange::closed(from, to);
+}
+
+Result<ExitCode> PrintCommand::dry_run(spool::Spool& spool, const spool::Job& job, RecordRange wanted) const {
+    constexpr std::uint64_t frames_shown = 5;
+    const RecordRange shown{wanted.first(), std::min(wanted.count(), RecordCount{frames_shown})};
+    std::vector<std::string> frames;
+    for (RecordNumber number = shown.first(); shown.contains(number); number = number.next()) {
+        const auto page = spool.read_page(job.id, number);
+        if (!page) {
+            return page.error();
+        }
+        std::string text;
+        for (const char c : page->slice({number, RecordCount{1}})) {
+            const auto byte = static_cast<unsigned char>(c);
+            char escaped[8];
+            std::snprintf(escaped, sizeof escaped, byte < 0x20 || byte >= 0x7F ? "<%02X>" : "%c", byte);
+            text += c == '\t' ? "<TAB>" : c == '\r' ? "<CR>" : escaped;
+        }
+        frames.push_back(text);
+        if (number == RecordNumber::max()) {
+            break;
+        }
+    }
+    if (options_.json) {
+        const nlohmann::ordered_json json{{"result", "dry_run"},
+                                          {"exit_code", 0},
+                                          {"records", wanted.count().value()},
+                                          {"first", wanted.first().value()},
+                                          {"last", wanted.last().value()},
+                                          {"frames", frames}};
+        std::cout << json.dump(2) << std::endl;
+        return ExitCode::done;
+    }
+    for (const std::string& frame : frames) {
+        std::cout << frame << '\n';
+    }
+    if (wanted.count() > shown.count()) {
+        std::cout << "… and " << (wanted.count() - shown.count()) << " more\n";
+    }
+    std::cout << "dry run: " << wanted.count() << " records (" << wanted << ") can be printed; nothing was sent"
+              << std::endl;
+    return ExitCode::done;
+}
+
+Result<ExitCode> PrintCommand::print(spool::Spool& spool, const spool::Job& job, RecordRange wanted,
+                                     const daemon::JobRunSettings& settings) {
+    feeder::Outcome outcome{feeder::OutcomeCode::nothing_to_print, {}, {}, false};
+    std::string detail;
+    bool word_counts = options_.operator_word.given(); // what the operator saw is true until something more is printed
+    while (!interrupted_) {
+        auto open = daemon::find_open_issue(spool, job.id);
+        const auto state = spool.ledger_state(job.id);
+        if (!open || !state) {
+            return open ? state.error() : open.error();
+        }
+        if (!*open && state->count(spool::RecordState::in_doubt) > RecordCount{0}) {
+            outcome.code = feeder::OutcomeCode::records_in_doubt;
+            if (!word_counts) {
+                break;
+            }
+            word_counts = false;
+            if (const auto settled = settle_by_operator(spool, job, options_.operator_word, options_.profile.escapes);
+                !settled) {
+                return settled.error();
+            }
+            continue;
+        }
+        if (!*open && state->next_printable(wanted).empty()) {
+            break;
+        }
+        daemon::JobRun run{spool, job, wanted, *open, settings};
+        run.start();
+        watch(run, wanted);
+        run.join();
+        outcome = run.outcome();
+        detail = run.detail();
+        word_counts = word_counts && !outcome.issued;
+        const bool doubt_to_settle = word_counts && outcome.code == feeder::OutcomeCode::records_in_doubt;
+        if (outcome.code != feeder::OutcomeCode::finished && !doubt_to_settle) {
+            break;
+        }
+    }
+    if (outcome.code == feeder::OutcomeCode::nothing_to_print) {
+        detail = "all records of " + options_.file.string() + " in this range are printed already";
+    }
+    const auto report = make_report(spool, job, wanted, outcome, detail, options_.profile.escapes);
+    if (!report) {
+        return report.error();
+    }
+    show_report(*report, options_.json);
+    return report->code;
+}
+
+void PrintCommand::watch(daemon::JobRun& run, RecordRange wanted) {
+    constexpr int wait_ms = 100;
+    while (!run.finished()) {
+        run.wait(wait_ms);
+        for (const feeder::Notice& notice : run.take_notices()) {
+            view_.message(printable(feeder::describe(notice)));
+        }
+        if (signals_.take() > 0) {
+            view_.message(interrupted_ ? "still stopping" : "stopping the line");
+            interrupted_ = true;
+            run.request_stop();
+        }
+        const daemon::RunProgress progress = run.progress();
+        if (progress.printing && !progress.range.empty()) {
+            const std::uint64_t left = (wanted.last() - progress.printed_through).value();
+            view_.update({"printing", 1.0 - static_cast<double>(left) / static_cast<double>(wanted.count().value()),
+                          "record " + std::to_string(progress.printed_through.value()) + " of " +
+                              std::to_string(wanted.last().value()),
+                          progress.rate_per_s,
+                          progress.rate_per_s > 0 ? std::optional{static_cast<double>(left) / progress.rate_per_s}
+                                                  : std::nullopt});
+        }
+    }
+    view_.finish();
+}
+
+} // namespace
+
+ExitCode run_print(const PrintOptions& options) {
+    PrintCommand command{options};
+    const auto result = command.run();
+    if (result) {
+        return *result;
+    }
+    if (!result.error().message.empty()) {
+        show_failure(result.error(), options.json);
+    }
+    return exit_code(result.error().kind);
+}
+
+} // namespace linefeed::cli

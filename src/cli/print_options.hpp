@@ -1,0 +1,52 @@
+// What `linefeed print` was asked to do.
+#pragma once
+
+#include "cli/operator_word.hpp"
+#include "protocol/charset.hpp"
+#include "protocol/mail_record.hpp"
+#include "protocol/profile.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace linefeed::cli {
+
+struct PrintOptions {
+    std::filesystem::path file;
+    std::string printer; ///< tcp://HOST:PORT; may be empty with dry_run
+    std::filesystem::path spool;
+
+    // The source
+    std::vector<std::string> columns;
+    std::optional<std::string> table;
+    std::optional<std::string> query;
+    std::optional<char> delimiter;
+    bool header = true;
+    bool skip_bad = false;
+
+    // The record
+    std::vector<std::string> encodings; ///< "latin1", or "COLUMN=unicode-hex"
+    protocol::Profile profile = protocol::profiles.front();
+    std::uint32_t base = 0;
+    protocol::RecordProperties properties;
+
+    // The run
+    std::optional<std::uint32_t> from;
+    std::optional<std::uint32_t> to;
+    bool dry_run = false;
+    bool new_job = false;
+    bool open_nozzle = false;
+    std::vector<std::uint32_t> acknowledge;
+    std::uint32_t connect_timeout_ms = 3000;
+    std::uint32_t reply_timeout_ms = 2000;
+
+    /// Settles records in doubt before anything is printed.
+    OperatorWord operator_word;
+
+    bool json = false;
+};
+
+} // namespace linefeed::cli

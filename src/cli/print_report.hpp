@@ -1,0 +1,58 @@
+// What `linefeed print` says at its end: what happened, where the ledger stands, and how to go on. One text for people,
+// one JSON object for programs.
+#pragma once
+
+#include "base/failure.hpp"
+#include "cli/exit_code.hpp"
+#include "feeder/outcome.hpp"
+#include "intake/import.hpp"
+#include "protocol/escapes.hpp"
+#include "spool/spool.hpp"
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace linefeed::cli {
+
+/// Records that an operator has to decide about, with what is printed on them.
+struct DoubtfulRecord {
+    RecordNumber number;
+    std::vector<std::string> fields;
+};
+
+struct PrintReport {
+    spool::Job job;
+    RecordRange wanted;
+    std::string result;  ///< "finished", "stop_requested", …
+    std::string message; ///< one line
+    ExitCode code = ExitCode::done;
+    RecordCount printed; ///< of the wanted records
+    std::optional<RecordNumber> last_printed;
+    RecordRange next; ///< what would be printed next; empty = nothing
+    RecordCount open; ///< issued, fate to be found out at the next start
+    RecordCount in_doubt;
+    std::vector<DoubtfulRecord> doubtful; ///< the first of them
+};
+
+inline constexpr std::size_t max_doubtful_shown = 300;
+
+/// Puts the report together from the ledger.
+[[nodiscard]] Result<PrintReport> make_report(spool::Spool& spool, const spool::Job& job, RecordRange wanted,
+                                              const feeder::Outcome& outcome, const std::string& detail,
+                                              protocol::EscapeMode escapes);
+
+/// For stdout.
+void show_report(const PrintReport& report, bool json);
+/// The rows that cannot be printed: for stderr, or as JSON on stdout.
+void show_bad_rows(const intake::ImportReport& report, const std::string& file, bool refused, bool json);
+/// A failure before there was anything to report.
+void show_failure(const Failure& failure, bool json);
+
+/// Fields of a record as UTF-8, as far as its bytes tell (hex digits stay what they are).
+[[nodiscard]] std::vector<std::string> record_fields(const RecordPage& page, RecordNumber number,
+                                                     protocol::EscapeMode escapes);
+
+} // namespace linefeed::cli

@@ -1,0 +1,21 @@
+// Ctrl-C and SIGTERM as a fact to ask for, instead of an interruption: the line has to be stopped in order.
+#pragma once
+
+namespace linefeed::cli {
+
+/// Construct before any thread starts: SIGINT, SIGTERM and SIGHUP are blocked from then on, in threads to come as well.
+class SignalWatch {
+public:
+    SignalWatch();
+    ~SignalWatch();
+    SignalWatch(const SignalWatch&) = delete;
+    SignalWatch& operator=(const SignalWatch&) = delete;
+
+    /// How many of the signals have come since the last call.
+    [[nodiscard]] int take();
+
+private:
+    int descriptor_ = -1;
+};
+
+} // namespace linefeed::cli

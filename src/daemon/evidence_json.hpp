@@ -1,0 +1,31 @@
+// The evidence of ledger rows as JSON: what the printer said, in the order of the protocol's tables, and whose word it
+// is.
+#pragma once
+
+#include "feeder/actions.hpp"
+#include "feeder/reconcile.hpp"
+
+#include <optional>
+#include <string>
+
+namespace linefeed::daemon {
+
+/// What a run_started row remembers of the printer: enough to reconcile after a crash.
+struct RunStart {
+    std::string printer; ///< address
+    std::string serial_number;
+    std::optional<std::uint32_t> total_before;
+    RecordNumber last_printed_before;
+
+    friend bool operator==(const RunStart&, const RunStart&) = default;
+};
+
+[[nodiscard]] std::string run_start_json(const std::string& printer, const feeder::BeginRun& begin);
+/// std::nullopt if the text is not what run_start_json() wrote.
+[[nodiscard]] std::optional<RunStart> parse_run_start(const std::string& json);
+/// {"sm":[depth,entries,last,stop,finished]}
+[[nodiscard]] std::string mail_json(const protocol::MailStatus& mail);
+[[nodiscard]] std::string settle_json(const feeder::Settle& settle);
+[[nodiscard]] std::string outcome_json(const feeder::Outcome& outcome);
+
+} // namespace linefeed::daemon

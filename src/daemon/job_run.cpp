@@ -1,0 +1,191 @@
+#include "daemon/job_run.hpp"
+
+#include <boost/asio/post.hpp>
+
+#include <unistd.h>
+
+namespace linefeed::daemon {
+
+namespace asio = boost::asio;
+using session::Effects;
+using session::Session;
+
+namespace {
+
+feeder::FeederPlan plan_for(const std::optional<OpenIssue>& open, spool::JobId job) {
+    feeder::FeederPlan plan;
+    if (open) {
+        plan.open = open->facts;
+        plan.doubt_blocks = open->job == job;
+    }
+    return plan;
+}
+
+} // namespace
+
+JobRun::JobRun(spool::Spool& spool, const spool::Job& job, RecordRange wanted, std::optional<OpenIssue> open,
+               const JobRunSettings& settings)
+    : settings_(settings)
+    , store_(spool, job.id, LedgerKeeper{spool, job.id, wanted, link::to_string(settings.printer), open})
+    , session_(settings.session, plan_for(open, job.id))
+    , link_(context_, session_, *this)
+    , replies_(context_, ::dup(store_.replies_signal().descriptor())) {}
+
+JobRun::~JobRun() {
+    if (thread_.joinable()) {
+        request_stop();
+    }
+    join();
+}
+
+void JobRun::start() {
+    store_.start();
+    wait_for_replies();
+    link_.connect(settings_.endpoints, settings_.connect_timeout);
+    thread_ = std::thread{[this] { context_.run(); }};
+}
+
+void JobRun::request_stop() {
+    asio::post(context_, [this] {
+        if (!finished()) {
+            link_.call([](Session& session, Instant at, Effects& effects) { session.request_stop(at, effects); });
+        }
+    });
+}
+
+void JobRun::join() {
+    if (thread_.joinable()) {
+        thread_.join();
+    }
+    store_.join();
+    if (!store_.failure().empty()) {
+        detail_ = store_.failure();
+    }
+}
+
+void JobRun::on_effect(const session::Effect& effect) {
+    if (const auto* confirm = std::get_if<feeder::ConfirmPrinted>(&effect)) {
+        confirm_ = *confirm;
+        push_cumulative();
+    } else if (const auto* intent = std::get_if<feeder::AskIntent>(&effect)) {
+        intent_ = *intent;
+        push_cumulative();
+    } else if (const auto* settle = std::get_if<feeder::Settle>(&effect)) {
+        push_cumulative();
+        push(*settle);
+    } else if (const auto* begin = std::get_if<feeder::BeginRun>(&effect)) {
+        push(*begin);
+    } else if (const auto* release = std::get_if<session::ReleasePage>(&effect)) {
+        push(PageReturned{release->page});
+    } else if (const auto* notice = std::get_if<feeder::Notice>(&effect)) {
+        printing_ = printing_ || notice->code == feeder::NoticeCode::printing_started;
+        notices_.push(*notice); // if nobody reads them, later ones are lost, and nothing else
+        news_.notify();
+    } else if (const auto* last = std::get_if<feeder::End>(&effect)) {
+        end(*last);
+    }
+}
+
+void JobRun::push(const StoreRequest& request) {
+    // push_cumulative() leaves half of the ring to requests that must not wait; there are fewer of those.
+    LINEFEED_ASSERT(store_.push(request));
+}
+
+/// Intents and confirmations grow: when the store is behind, only the latest matters.
+void JobRun::push_cumulative() {
+    const bool last_chance = session_.feeder().phase() == feeder::Phase::ended;
+    const std::size_t room = last_chance ? 2 : Store::ring_capacity / 2;
+    if (intent_ && store_.room() > room && store_.push(*intent_)) {
+        intent_.reset();
+    }
+    if (confirm_ && store_.room() > room && store_.push(*confirm_)) {
+        confirm_.reset();
+    }
+}
+
+void JobRun::on_unreachable(const std::string& reason) {
+    detail_ = reason;
+    end({{feeder::OutcomeCode::unreachable, {}, {}, false}});
+}
+
+void JobRun::end(const feeder::End& end) {
+    outcome_ = end.outcome;
+    push_cumulative();
+    push(end);
+    finished_.store(true, std::memory_order_release);
+    news_.notify();
+    asio::post(context_, [this] {
+        boost::system::error_code ignored;
+        replies_.close(ignored);
+        link_.abort();
+    });
+}
+
+void JobRun::on_progress() {
+    const feeder::Feeder& feeder = session_.feeder();
+    const RecordRange& range = feeder.refill().range();
+    if (range.empty()) {
+        return;
+    }
+    range_.store(std::uint64_t{range.first().value()} << 32 | range.last().value(), std::memory_order_relaxed);
+    printed_through_.store(feeder.refill().printed_through().value(), std::memory_order_relaxed);
+    sent_through_.store(feeder.refill().sent_through().value(), std::memory_order_relaxed);
+    rate_per_s_.store(feeder.rate(), std::memory_order_relaxed);
+}
+
+RunProgress JobRun::progress() const {
+    RunProgress progress;
+    progress.printing = printing_;
+    if (const std::uint64_t range = range_.load(std::memory_order_relaxed); range != 0) {
+        progress.range = RecordRange::closed(RecordNumber{static_cast<std::uint32_t>(range >> 32)},
+                                             RecordNumber{static_cast<std::uint32_t>(range)});
+    }
+    progress.printed_through = RecordNumber{printed_through_.load(std::memory_order_relaxed)};
+    progress.sent_through = RecordNumber{sent_through_.load(std::memory_order_relaxed)};
+    progress.rate_per_s = rate_per_s_.load(std::memory_order_relaxed);
+    return progress;
+}
+
+std::vector<feeder::Notice> JobRun::take_notices() {
+    std::vector<feeder::Notice> notices;
+    feeder::Notice notice;
+    while (notices_.pop(notice)) {
+        notices.push_back(notice);
+    }
+    return notices;
+}
+
+void JobRun::wait_for_replies() {
+    replies_.async_wait(asio::posix::stream_descriptor::wait_read, [this](const boost::system::error_code& error) {
+        if (error) {
+            return;
+        }
+        store_.replies_signal().clear();
+        take_replies();
+        wait_for_replies();
+    });
+}
+
+void JobRun::take_replies() {
+    StoreReply reply;
+    while (!finished() && store_.pop(reply)) {
+        link_.call([&reply](Session& session, Instant at, Effects& effects) {
+            if (const auto* page = std::get_if<PageReady>(&reply)) {
+                session.on_page(page->page, at, effects);
+            } else if (const auto* durable = std::get_if<Durable>(&reply)) {
+                session.on_durable(durable->through, at, effects);
+            } else if (const auto* granted = std::get_if<Granted>(&reply)) {
+                session.on_granted(granted->range, granted->durable_through, at, effects);
+            } else if (const auto* refused = std::get_if<Refused>(&reply)) {
+                session.on_refused(refused->why, at, effects);
+            } else if (std::holds_alternative<Settled>(reply)) {
+                session.on_settled(at, effects);
+            } else if (std::holds_alternative<StorageFailed>(reply)) {
+                session.on_storage_failed(at, effects);
+            }
+        });
+        push_cumulative();
+    }
+}
+
+} // namespace linefeed::daemon

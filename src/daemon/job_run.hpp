@@ -1,0 +1,98 @@
+// One run of one job on one printer: the feed thread with its link and session, the store thread, and what people may
+// see of it.
+#pragma once
+
+#include "daemon/store.hpp"
+#include "feeder/outcome.hpp"
+#include "link/printer_address.hpp"
+#include "link/tcp_link.hpp"
+#include "session/session.hpp"
+#include "spool/spool.hpp"
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/posix/stream_descriptor.hpp>
+
+#include <atomic>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace linefeed::daemon {
+
+struct JobRunSettings {
+    link::PrinterAddress printer;
+    std::vector<boost::asio::ip::tcp::endpoint> endpoints; ///< of the printer, resolved
+    session::SessionSettings session;
+    Duration connect_timeout = std::chrono::seconds{3};
+};
+
+/// A glance at the run, from any thread.
+struct RunProgress {
+    bool printing = false;
+    RecordRange range; ///< of this run; empty until granted
+    RecordNumber printed_through;
+    RecordNumber sent_through;
+    double rate_per_s = 0;
+};
+
+/// Flow: construct, start(), poll progress() and take_notices(), request_stop() if wanted, until finished(); then
+/// join() and result(). The spool belongs to the run from start() to join().
+class JobRun final : private link::EffectHandler {
+public:
+    JobRun(spool::Spool& spool, const spool::Job& job, RecordRange wanted, std::optional<OpenIssue> open,
+           const JobRunSettings& settings);
+    ~JobRun() override;
+    JobRun(const JobRun&) = delete;
+    JobRun& operator=(const JobRun&) = delete;
+
+    void start();
+    /// Stops the line and finds the truth; any thread.
+    void request_stop();
+    [[nodiscard]] bool finished() const { return finished_.load(std::memory_order_acquire); }
+    /// Waits until something happens or the time has passed.
+    void wait(int timeout_ms) { news_.wait(timeout_ms); }
+    [[nodiscard]] RunProgress progress() const;
+    [[nodiscard]] std::vector<feeder::Notice> take_notices();
+    void join();
+
+    // After join()
+    [[nodiscard]] const feeder::Outcome& outcome() const { return outcome_; }
+    /// Why there was no connection, or what is wrong with the storage; empty = nothing to add.
+    [[nodiscard]] const std::string& detail() const { return detail_; }
+    [[nodiscard]] const session::SessionStatistics& statistics() const { return session_.statistics(); }
+
+private:
+    void on_effect(const session::Effect& effect) override;
+    void on_unreachable(const std::string& reason) override;
+    void on_progress() override;
+    void wait_for_replies();
+    void take_replies();
+    void push(const StoreRequest& request);
+    void push_cumulative();
+    void end(const feeder::End& end);
+
+    JobRunSettings settings_;
+    Store store_;
+    boost::asio::io_context context_{1};
+    session::Session session_;
+    link::TcpLink link_;
+    boost::asio::posix::stream_descriptor replies_;
+    std::thread thread_;
+
+    std::optional<feeder::ConfirmPrinted> confirm_; ///< latest not yet handed to the store
+    std::optional<feeder::AskIntent> intent_;
+
+    boost::lockfree::spsc_queue<feeder::Notice, boost::lockfree::capacity<64>> notices_;
+    EventSignal news_;
+    std::atomic<bool> printing_{false};
+    std::atomic<std::uint64_t> range_{0}; ///< first << 32 | last; 0 = none
+    std::atomic<std::uint32_t> printed_through_{0};
+    std::atomic<std::uint32_t> sent_through_{0};
+    std::atomic<double> rate_per_s_{0};
+    std::atomic<bool> finished_{false};
+    feeder::Outcome outcome_;
+    std::string detail_;
+};
+
+} // namespace linefeed::daemon

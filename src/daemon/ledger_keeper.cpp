@@ -1,0 +1,182 @@
+#include "daemon/ledger_keeper.hpp"
+
+#include "daemon/evidence_json.hpp"
+
+#include <algorithm>
+
+namespace linefeed::daemon {
+
+using spool::LedgerEntry;
+using spool::LedgerKind;
+using spool::RecordState;
+
+namespace {
+
+/// Intents of the first grant: enough for the first fill of any FIFO; the feeder asks for more as it goes.
+constexpr std::uint64_t first_intents = 512;
+
+/// `range` without its part up to and including `last`.
+RecordRange behind(RecordRange range, RecordNumber last) {
+    if (range.empty() || range.last() <= last) {
+        return {};
+    }
+    return RecordRange::closed(std::max(range.first(), last.next()), range.last());
+}
+
+} // namespace
+
+Result<std::optional<OpenIssue>> find_open_issue(spool::Spool& spool, spool::JobId job) {
+    const auto state = spool.ledger_state(job);
+    if (!state) {
+        return state.error();
+    }
+    const std::vector<RecordRange> open = state->ranges(RecordState::open);
+    if (open.empty()) {
+        return std::optional<OpenIssue>{};
+    }
+    const auto last_run = spool.last_run(job);
+    if (!last_run) {
+        return last_run.error();
+    }
+    // A run issues in ascending order and none begins before the last is settled, so what is open is one stretch of the
+    // last run.
+    LINEFEED_ASSERT(open.size() == 1 && last_run->has_value());
+    const spool::LedgerRow& started = (*last_run)->started;
+    const auto start = parse_run_start(started.entry.evidence);
+    if (!start) {
+        return Failure{FailureKind::storage, "the print ledger is damaged: the start of run " +
+                                                 std::to_string(static_cast<std::int64_t>(started.entry.run)) +
+                                                 " cannot be read"};
+    }
+    OpenIssue issue;
+    issue.job = job;
+    issue.run = started.entry.run;
+    issue.records = open.front();
+    issue.printer = start->printer;
+    issue.facts = {started.entry.range.first(), issue.records.first().previous(),
+                   issue.records.last(),        start->serial_number,
+                   start->total_before,         start->last_printed_before};
+    return std::optional<OpenIssue>{issue};
+}
+
+LedgerKeeper::LedgerKeeper(spool::Spool& spool, spool::JobId job, RecordRange wanted, std::string printer,
+                           std::optional<OpenIssue> open)
+    : spool_(spool)
+    , job_(job)
+    , wanted_(wanted)
+    , printer_(std::move(printer))
+    , open_(std::move(open)) {}
+
+Result<void> LedgerKeeper::append_verdict(spool::JobId job, spool::RunId run, const feeder::Settle& settle) {
+    const auto state = spool_.ledger_state(job);
+    if (!state) {
+        return state.error();
+    }
+    const std::string evidence = settle_json(settle);
+    std::vector<LedgerEntry> entries;
+    const auto add = [&](LedgerKind kind, RecordRange range) {
+        if (!range.empty()) {
+            entries.push_back({kind, run, range, evidence});
+        }
+    };
+    add(LedgerKind::printed, settle.verdict.printed);
+    add(LedgerKind::in_doubt, settle.verdict.in_doubt);
+    for (RecordRange open : state->ranges(RecordState::open)) {
+        if (!settle.verdict.printed.empty()) {
+            open = behind(open, settle.verdict.printed.last());
+        }
+        if (!settle.verdict.in_doubt.empty()) {
+            open = behind(open, settle.verdict.in_doubt.last());
+        }
+        add(LedgerKind::unused, open);
+    }
+    return entries.empty() ? Result<void>{} : spool_.append(job, entries);
+}
+
+Result<void> LedgerKeeper::settle_earlier(const feeder::Settle& settle) {
+    LINEFEED_ASSERT(open_.has_value());
+    return append_verdict(open_->job, open_->run, settle);
+}
+
+Result<LedgerKeeper::Grant> LedgerKeeper::grant(const feeder::BeginRun& begin) {
+    const auto state = spool_.ledger_state(job_);
+    if (!state) {
+        return state.error();
+    }
+    Grant grant;
+    if (state->count(RecordState::in_doubt) > RecordCount{0}) {
+        grant.in_doubt = true;
+        return grant;
+    }
+    grant.range = state->next_printable(wanted_);
+    if (grant.range.empty()) {
+        return grant;
+    }
+    const auto run = spool_.begin_run(job_, grant.range, run_start_json(printer_, begin));
+    if (!run) {
+        return run.error();
+    }
+    run_ = *run;
+    intent_through_ = printed_through_ = grant.range.first().previous();
+    intent(intent_through_ + std::min(grant.range.count(), RecordCount{first_intents}));
+    if (const auto committed = commit(); !committed) {
+        return committed.error();
+    }
+    grant.durable_through = intent_through_;
+    return grant;
+}
+
+void LedgerKeeper::intent(RecordNumber through) {
+    if (through > intent_through_) {
+        const RecordNumber first = pending_intent_.empty() ? intent_through_.next() : pending_intent_.first();
+        pending_intent_ = RecordRange::closed(first, through);
+        intent_through_ = through;
+    }
+}
+
+void LedgerKeeper::printed(RecordNumber through, const protocol::MailStatus& evidence) {
+    if (through > printed_through_) {
+        const RecordNumber first = pending_printed_.empty() ? printed_through_.next() : pending_printed_.first();
+        pending_printed_ = RecordRange::closed(first, through);
+        pending_evidence_ = evidence;
+        printed_through_ = through;
+    }
+}
+
+bool LedgerKeeper::has_pending() const {
+    return !pending_intent_.empty() || !pending_printed_.empty();
+}
+
+Result<void> LedgerKeeper::commit() {
+    LINEFEED_ASSERT(run_.has_value());
+    std::vector<LedgerEntry> entries;
+    if (!pending_intent_.empty()) {
+        entries.push_back({LedgerKind::intent, *run_, pending_intent_, {}});
+    }
+    if (!pending_printed_.empty()) {
+        entries.push_back({LedgerKind::printed, *run_, pending_printed_, mail_json(pending_evidence_)});
+    }
+    pending_intent_ = {};
+    pending_printed_ = {};
+    return entries.empty() ? Result<void>{} : spool_.append(job_, entries);
+}
+
+Result<void> LedgerKeeper::settle(const feeder::Settle& settle) {
+    if (const auto committed = commit(); !committed) {
+        return committed;
+    }
+    return append_verdict(job_, *run_, settle);
+}
+
+Result<void> LedgerKeeper::finish(const feeder::Outcome& outcome) {
+    if (!run_) {
+        return {};
+    }
+    if (const auto committed = commit(); !committed) {
+        return committed;
+    }
+    const LedgerEntry ended{LedgerKind::run_ended, *run_, {}, outcome_json(outcome)};
+    return spool_.append(job_, {&ended, 1});
+}
+
+} // namespace linefeed::daemon

@@ -1,0 +1,209 @@
+// Where the facts arrive: each goes to the step that waits for it.
+#include "feeder/feeder.hpp"
+
+#include <algorithm>
+
+namespace linefeed::feeder {
+
+using protocol::MachineState;
+using protocol::Parameter;
+
+Feeder::Feeder(const FeederSettings& settings, const FeederPlan& plan)
+    : settings_(settings)
+    , plan_(plan)
+    , pacing_(settings.pacing) {}
+
+void Feeder::on_machine_status(const protocol::MachineStatus& status, Instant now, Actions& out) {
+    status_ = status;
+    status_outstanding_ = false;
+    switch (phase_) {
+    case Phase::identifying:
+        if (status_.machine == MachineState::standby) {
+            end(OutcomeCode::not_ready, out); // nothing else is answered in standby
+            return;
+        }
+        identity_answers_missing_ = 2;
+        ask(Parameter::VS, now, out);
+        ask(Parameter::JL, now, out);
+        return;
+    case Phase::halting:
+        if (status_.machine == MachineState::printing) {
+            ask_later(Parameter::RS, now);
+            return;
+        }
+        enter(Phase::locating, now, settings_.finish_timeout);
+        ask(Parameter::SM, now, out);
+        return;
+    case Phase::acknowledging:
+        if (status_.error.raw == acknowledged_) {
+            ask_later(Parameter::RS, now);
+            return;
+        }
+        check_ready(now, out); // acknowledged; perhaps another error stood behind it
+        return;
+    case Phase::opening_nozzle:
+        if (status_.machine == MachineState::ready && (status_.error.none() || status_.error.raw == error_noticed_)) {
+            ask_later(Parameter::RS, now);
+            return;
+        }
+        check_ready(now, out);
+        return;
+    case Phase::starting:
+        start_answered(now, out);
+        return;
+    case Phase::printing:
+        print_status(now, out);
+        return;
+    case Phase::stopping:
+        if (status_.machine == MachineState::printing) {
+            ask_later(Parameter::RS, now);
+            return;
+        }
+        begin_judging(now, out);
+        return;
+    case Phase::judging:
+        judge_status(now, out);
+        return;
+    case Phase::finishing:
+        if (status_.error.raw == acknowledged_) {
+            ask_later(Parameter::RS, now);
+            return;
+        }
+        end(OutcomeCode::finished, out);
+        return;
+    case Phase::idle:
+    case Phase::locating:
+    case Phase::granting:
+    case Phase::flushing:
+    case Phase::setting_stop:
+    case Phase::loading:
+    case Phase::verifying:
+    case Phase::clearing:
+    case Phase::ended:
+        return;
+    }
+}
+
+void Feeder::on_mail_status(const protocol::MailStatus& status, Instant now, Actions& out) {
+    mail_outstanding_ = std::max(0, mail_outstanding_ - 1);
+    mail_ = status;
+    ++mail_reads_;
+    switch (phase_) {
+    case Phase::locating:
+    case Phase::judging:
+        locate_step(now, out);
+        return;
+    case Phase::flushing:
+        flushed(now, out);
+        return;
+    case Phase::setting_stop:
+        stop_point_answered(now, out);
+        return;
+    case Phase::verifying:
+        verify(now, out);
+        return;
+    case Phase::printing:
+        print_mail(now, out);
+        return;
+    case Phase::idle:
+    case Phase::identifying:
+    case Phase::halting:
+    case Phase::opening_nozzle:
+    case Phase::acknowledging:
+    case Phase::granting:
+    case Phase::loading:
+    case Phase::starting:
+    case Phase::stopping:
+    case Phase::finishing:
+    case Phase::clearing:
+    case Phase::ended:
+        return;
+    }
+}
+
+/// Only the second of two answers is surely current; and a print in progress gets the time to finish.
+void Feeder::locate_step(Instant now, Actions& out) {
+    if (mail_outstanding_ > 0) {
+        mail_reads_ = 0; // an answer to an inquiry from before the stop
+        return;
+    }
+    const bool print_in_progress = !mail_.last_print_finished && status_.machine != MachineState::printing;
+    if (mail_reads_ < 2) {
+        ask(Parameter::SM, now, out);
+    } else if (print_in_progress && deadline_ && now < *deadline_) {
+        ask_later(Parameter::SM, now);
+    } else {
+        ask(Parameter::CC, now, out);
+    }
+}
+
+void Feeder::on_counters(const protocol::Counters& counters, Instant now, Actions& out) {
+    facts_.total_prints = counters.total;
+    if (phase_ == Phase::locating) {
+        located(now, out);
+    } else if (phase_ == Phase::judging) {
+        judge(now, out);
+    }
+}
+
+void Feeder::on_version(const protocol::VersionInfo& version, Instant now, Actions& out) {
+    facts_.version = version;
+    if (--identity_answers_missing_ == 0) {
+        identified(now, out);
+    }
+}
+
+void Feeder::on_job_name(const protocol::JobName& job, Instant now, Actions& out) {
+    facts_.job_name = job.path;
+    if (--identity_answers_missing_ == 0) {
+        identified(now, out);
+    }
+}
+
+void Feeder::on_no_answer(Parameter what, Instant now, Actions& out) {
+    if (phase_ == Phase::ended) {
+        return;
+    }
+    if (what == Parameter::VS || what == Parameter::JL) {
+        if (--identity_answers_missing_ == 0) {
+            identified(now, out);
+        }
+    } else if (what == Parameter::CC) {
+        on_counters({}, now, out);
+    } else if (phase_ == Phase::finishing) {
+        end(OutcomeCode::finished, out); // printed and settled all; only the message stays on the panel
+    } else {
+        if (any_sent_) {
+            out.push_back(Command{protocol::Action::stop_print}); // it may still listen
+        }
+        end(OutcomeCode::no_answer, out);
+    }
+}
+
+void Feeder::on_link_lost(Actions& out) {
+    end(phase_ == Phase::finishing ? OutcomeCode::finished : OutcomeCode::link_lost, out);
+}
+
+void Feeder::on_durable(RecordNumber through, Instant now, Actions& out) {
+    if (!has_granted_records()) {
+        return;
+    }
+    refill_.durable(through);
+    if (phase_ == Phase::printing) {
+        refill_now(out);
+    }
+    try_loading(now, out);
+}
+
+void Feeder::on_supplied(RecordNumber through, Instant now, Actions& out) {
+    if (!has_granted_records()) {
+        return;
+    }
+    refill_.supplied(through);
+    if (phase_ == Phase::printing) {
+        refill_now(out);
+    }
+    try_loading(now, out);
+}
+
+} // namespace linefeed::feeder

@@ -1,0 +1,193 @@
+// The refill and resume machine of one printer: facts and time in, actions out. It knows record numbers, never bytes or
+// sockets, reads no clock and does no I/O. The sequence is the manual's own (protocol, section 5): identify, status,
+// where are we, flush, stop point with read-back, fill, verify, GO, refills, stop, and after any stop the truth.
+#pragma once
+
+#include "base/record_number.hpp"
+#include "base/time.hpp"
+#include "feeder/actions.hpp"
+#include "feeder/pacing.hpp"
+#include "feeder/refill.hpp"
+
+#include <cstdint>
+#include <optional>
+
+namespace linefeed::feeder {
+
+/// What the operator allows, and the beat.
+struct FeederSettings {
+    PacingSettings pacing;
+    /// `!NO` when the nozzle is closed, instead of refusing.
+    bool open_nozzle = false;
+    /// Error codes that may be acknowledged before a start besides those of mailing, whose truth the ledger knows by
+    /// then.
+    BoundedList<std::uint32_t, 16> acknowledge;
+    Duration status_interval = std::chrono::milliseconds{500}; ///< `?RS` while printing
+    Duration retry_interval = std::chrono::milliseconds{20};   ///< between inquiries while waiting for a state
+    Duration flush_timeout = std::chrono::seconds{2};
+    Duration verify_timeout = std::chrono::seconds{5};
+    Duration start_timeout = std::chrono::seconds{15};
+    Duration stop_timeout = std::chrono::seconds{10};
+    Duration finish_timeout = std::chrono::seconds{2}; ///< for the print in progress, and for `!EQ` to be seen
+    Duration nozzle_timeout = std::chrono::seconds{120};
+};
+
+/// What is known before the printer is asked.
+struct FeederPlan {
+    /// Records issued earlier whose fate the printer may know.
+    std::optional<OpenRun> open;
+    /// If some of those stay in doubt, nothing is printed before an operator has decided.
+    bool doubt_blocks = true;
+};
+
+enum class Phase {
+    idle,
+    identifying,    ///< `?RS`, `?VS`, `?JL`
+    locating,       ///< `?SM` twice, `?CC`: where is the printer?
+    halting,        ///< found printing the earlier run: `!ST`
+    opening_nozzle, ///< `!NO`
+    acknowledging,  ///< `!EQ`
+    granting,       ///< the ledger takes the truth down and grants records
+    flushing,       ///< `!FF`
+    setting_stop,   ///< `=CM`, read back
+    loading,        ///< waits for the first records in memory and their intent on disk
+    verifying,      ///< first fill sent: did the printer take it?
+    starting,       ///< `!GO`
+    printing,
+    stopping,  ///< `!ST`
+    judging,   ///< stopped: `?RS`, `?SM` twice, `?CC`
+    finishing, ///< all printed: `!EQ` for message 1223
+    clearing,  ///< never printed: waits for the ledger, then `!FF`
+    ended,
+};
+
+/// Flow: start() once the connection stands; then one on_…() for each fact, and on_time() at next_wake(); each appends
+/// to `out`. After End nothing more is done.
+class Feeder {
+public:
+    Feeder(const FeederSettings& settings, const FeederPlan& plan);
+
+    void start(Instant now, Actions& out);
+
+    // Facts from the printer. `now` is when the answer arrived.
+    void on_machine_status(const protocol::MachineStatus& status, Instant now, Actions& out);
+    void on_mail_status(const protocol::MailStatus& status, Instant now, Actions& out);
+    void on_counters(const protocol::Counters& counters, Instant now, Actions& out);
+    void on_version(const protocol::VersionInfo& version, Instant now, Actions& out);
+    void on_job_name(const protocol::JobName& job, Instant now, Actions& out);
+    /// An inquiry got no answer in time. Only `?RS` and `?SM` are needed; the rest is evidence that is missing then.
+    void on_no_answer(protocol::Parameter what, Instant now, Actions& out);
+    void on_link_lost(Actions& out);
+
+    // Facts from the ledger and the pages.
+    /// The truth is in the ledger, and `range` may be printed; intents up to `durable_through` are durable.
+    void on_granted(RecordRange range, RecordNumber durable_through, Instant now, Actions& out);
+    /// No records are granted: `why` is nothing_to_print or records_in_doubt.
+    void on_refused(OutcomeCode why, Actions& out);
+    void on_durable(RecordNumber through, Instant now, Actions& out);
+    void on_supplied(RecordNumber through, Instant now, Actions& out);
+    /// The Settle of this run is durable.
+    void on_settled(Actions& out);
+    void on_storage_failed(Instant now, Actions& out);
+
+    /// Stop the line and find the truth.
+    void request_stop(Instant now, Actions& out);
+
+    void on_time(Instant now, Actions& out);
+    /// When on_time() is due; absent = not before another fact.
+    [[nodiscard]] std::optional<Instant> next_wake() const;
+
+    [[nodiscard]] Phase phase() const { return phase_; }
+    [[nodiscard]] const Refill& refill() const { return refill_; }
+    [[nodiscard]] double rate() const { return pacing_.rate(); }
+    [[nodiscard]] const protocol::MailStatus& mail() const { return mail_; }
+
+private:
+    enum class StopPoint {
+        unset,     ///< not kept so far: sent again while it prints
+        kept_idle, ///< read back before the start
+        kept,      ///< seen to stand while the printer prints: from now on it vanishes only with a stop
+        ignored,   ///< by this firmware
+    };
+
+    // feeder_time.cpp: asking and waiting, and locate_step() of feeder.cpp
+    void enter(Phase phase, Instant now, Duration timeout);
+    void ask(protocol::Parameter what, Instant now, Actions& out);
+    void ask_later(protocol::Parameter what, Instant now);
+    void locate_step(Instant now, Actions& out);
+    void on_deadline(Instant now, Actions& out);
+    [[nodiscard]] bool has_granted_records() const { return !refill_.range().empty(); }
+
+    // feeder_arming.cpp: from the connection to the first print
+    void identified(Instant now, Actions& out);
+    void located(Instant now, Actions& out);
+    [[nodiscard]] bool prints_earlier_run() const;
+    void check_ready(Instant now, Actions& out);
+    void check_errors(Instant now, Actions& out);
+    void flushed(Instant now, Actions& out);
+    void stop_point_answered(Instant now, Actions& out);
+    void try_loading(Instant now, Actions& out);
+    void verify(Instant now, Actions& out);
+    void start_answered(Instant now, Actions& out);
+    [[nodiscard]] bool may_acknowledge(const protocol::PrinterError& error) const;
+
+    // feeder_printing.cpp: reports, refills and the stop point
+    void print_status(Instant now, Actions& out);
+    void print_mail(Instant now, Actions& out);
+    [[nodiscard]] bool take_report(Instant now, Actions& out);
+    [[nodiscard]] bool stop_point_vanished(Instant now, Actions& out);
+    void stop_suspected(Instant now, Actions& out);
+    void insist_on_stop_point(Actions& out);
+    void all_printed(Instant now, Actions& out);
+    void refill_now(Actions& out);
+    [[nodiscard]] bool marker_printed() const;
+
+    // feeder_stopping.cpp: from the last print or an interruption to the truth and the end
+    void begin_stop(OutcomeCode cause, Instant now, Actions& out);
+    void send_stop(Instant now, Actions& out);
+    void begin_judging(Instant now, Actions& out);
+    void judge_status(Instant now, Actions& out);
+    void judge(Instant now, Actions& out);
+    [[nodiscard]] OutcomeCode cause_of_stop() const;
+    void end(OutcomeCode code, Actions& out);
+
+    FeederSettings settings_;
+    FeederPlan plan_;
+    Pacing pacing_;
+    Refill refill_;
+    Phase phase_ = Phase::idle;
+
+    protocol::MachineStatus status_;
+    protocol::MailStatus mail_;
+    PrinterFacts facts_;
+
+    int mail_reads_ = 0; ///< `=SM` answers in this phase
+    int identity_answers_missing_ = 0;
+    int mail_outstanding_ = 0;
+    bool status_outstanding_ = false;
+    std::optional<Instant> deadline_; ///< of the phase
+    std::optional<Instant> retry_at_;
+    protocol::Parameter retry_what_ = protocol::Parameter::RS;
+    std::optional<Instant> mail_due_;
+    std::optional<Instant> status_due_;
+
+    std::int32_t acknowledged_ = 0; ///< the error that `!EQ` was sent for
+    RecordNumber left_over_;        ///< last printed number that stood in the printer before this run
+    bool left_over_passed_ = false; ///< the printer has reported another number since
+    std::optional<std::uint32_t> total_before_;
+    StopPoint stop_point_ = StopPoint::unset;
+    int stop_point_tries_ = 0;
+    int stop_point_misses_ = 0;              ///< answers without the stop point since it was sent
+    std::optional<Instant> suspected_since_; ///< the stop point vanished: nothing is sent before `?RS` has told why
+    bool restarted_ = false;                 ///< stopped and started again at the printer, as records were on their way
+    bool memory_lost_ = false;               ///< the reported number went back
+    std::optional<Instant> all_printed_at_;
+    bool marker_sent_ = false;
+    bool any_sent_ = false;
+    bool settled_ = false; ///< Settle of this run is out
+    std::int32_t error_noticed_ = 0;
+    RecordNumber confirmed_through_;
+    std::optional<OutcomeCode> cause_;
+};
+
+} // namespace linefeed::feeder

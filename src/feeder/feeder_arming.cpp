@@ -1,0 +1,221 @@
+// The feeder's way from a fresh connection to the first print (protocol, section 5). Nothing is flushed before the
+// ledger knows the truth about earlier records, and no error is acknowledged that is not understood.
+#include "feeder/feeder.hpp"
+#include "feeder/mailing_error.hpp"
+
+#include <algorithm>
+
+namespace linefeed::feeder {
+
+using protocol::MachineState;
+using protocol::Parameter;
+
+void Feeder::start(Instant now, Actions& out) {
+    LINEFEED_ASSERT(phase_ == Phase::idle);
+    enter(Phase::identifying, now, Duration::max());
+    ask(Parameter::RS, now, out);
+}
+
+void Feeder::identified(Instant now, Actions& out) {
+    if (phase_ == Phase::identifying) {
+        enter(Phase::locating, now, settings_.finish_timeout);
+        ask(Parameter::SM, now, out);
+    }
+}
+
+/// The printer prints records of the open run, or has been started on it and has not yet printed the first.
+bool Feeder::prints_earlier_run() const {
+    if (!plan_.open || is_another_printer(*plan_.open, facts_)) {
+        return false;
+    }
+    const OpenRun& run = *plan_.open;
+    const bool ours =
+        std::max(run.first, run.printed_through) <= mail_.last_printed && mail_.last_printed <= run.issued_through;
+    const bool not_begun = run.printed_through < run.first && mail_.last_printed == run.last_printed_before;
+    return ours || not_begun;
+}
+
+void Feeder::located(Instant now, Actions& out) {
+    if (status_.machine == MachineState::printing) {
+        if (!prints_earlier_run()) {
+            end(OutcomeCode::busy, out);
+            return;
+        }
+        out.push_back(Notice{NoticeCode::found_printing, {}});
+        out.push_back(Command{protocol::Action::stop_print});
+        enter(Phase::halting, now, settings_.stop_timeout);
+        ask(Parameter::RS, now, out);
+        return;
+    }
+    if (plan_.open) {
+        const Evidence evidence{.mail = mail_, .printer = facts_};
+        const Verdict verdict = reconcile(*plan_.open, evidence);
+        out.push_back(Settle{verdict, evidence, true});
+        if (!verdict.in_doubt.empty() && plan_.doubt_blocks) {
+            end(OutcomeCode::records_in_doubt, out);
+            return;
+        }
+    }
+    check_ready(now, out);
+}
+
+void Feeder::check_ready(Instant now, Actions& out) {
+    if (status_.cover_open && status_.machine != MachineState::standby) {
+        end(OutcomeCode::cover_open, out);
+        return;
+    }
+    const bool nozzle_opens = status_.machine == MachineState::ready && settings_.open_nozzle;
+    if (status_.machine != MachineState::ready_to_print && !nozzle_opens) {
+        end(OutcomeCode::not_ready, out);
+        return;
+    }
+    check_errors(now, out);
+}
+
+bool Feeder::may_acknowledge(const protocol::PrinterError& error) const {
+    const auto allowed = [this](std::uint32_t error_code) {
+        return std::find(settings_.acknowledge.begin(), settings_.acknowledge.end(), error_code) !=
+               settings_.acknowledge.end();
+    };
+    return is_mailing_error(error) || allowed(error.code()) || allowed(error.code_without_bit_24());
+}
+
+void Feeder::check_errors(Instant now, Actions& out) {
+    if (!status_.error.none() && status_.error.raw != error_noticed_) {
+        if (may_acknowledge(status_.error)) {
+            acknowledged_ = status_.error.raw;
+            out.push_back(Notice{NoticeCode::error_acknowledged, status_.error});
+            out.push_back(Command{protocol::Action::acknowledge_errors});
+            if (phase_ != Phase::acknowledging) { // one deadline, however many errors stand behind one another
+                enter(Phase::acknowledging, now, settings_.finish_timeout);
+            }
+            ask(Parameter::RS, now, out);
+            return;
+        }
+        if (status_.error.display() == protocol::ErrorDisplay::error) {
+            end(OutcomeCode::error_pending, out);
+            return;
+        }
+        out.push_back(Notice{NoticeCode::printer_warning, status_.error});
+        error_noticed_ = status_.error.raw;
+    }
+    if (status_.machine == MachineState::ready) {
+        out.push_back(Notice{NoticeCode::nozzle_opening, {}});
+        out.push_back(Command{protocol::Action::nozzle_open});
+        enter(Phase::opening_nozzle, now, settings_.nozzle_timeout);
+        ask(Parameter::RS, now, out);
+        return;
+    }
+    if (mail_.depth == 0) {
+        end(OutcomeCode::records_not_taken, out);
+        return;
+    }
+    enter(Phase::granting, now, Duration::max());
+    out.push_back(BeginRun{facts_, mail_.last_printed});
+}
+
+void Feeder::on_granted(RecordRange range, RecordNumber durable_through, Instant now, Actions& out) {
+    if (phase_ != Phase::granting) {
+        return;
+    }
+    refill_.begin(range, RecordCount{mail_.depth});
+    refill_.durable(durable_through);
+    confirmed_through_ = range.first().previous();
+    total_before_ = facts_.total_prints;
+    left_over_ = mail_.last_printed;
+    enter(Phase::flushing, now, settings_.flush_timeout);
+    out.push_back(Command{protocol::Action::flush_fifo});
+    ask(Parameter::SM, now, out);
+}
+
+void Feeder::on_refused(OutcomeCode why, Actions& out) {
+    if (phase_ == Phase::granting) {
+        end(why, out);
+    }
+}
+
+void Feeder::flushed(Instant now, Actions& out) {
+    if (mail_.last_printed != left_over_ && mail_.last_printed != RecordNumber{}) {
+        begin_stop(OutcomeCode::busy, now, out); // it has printed since the ledger took the truth down
+        return;
+    }
+    if (mail_.entries != 0) {
+        ask_later(Parameter::SM, now);
+        return;
+    }
+    left_over_ = mail_.last_printed;
+    enter(Phase::setting_stop, now, Duration::max());
+    out.push_back(SetStopAt{refill_.range().last()});
+    ask(Parameter::SM, now, out);
+}
+
+void Feeder::stop_point_answered(Instant now, Actions& out) {
+    if (mail_.stop_at != refill_.range().last() && mail_reads_ < 2) {
+        ask(Parameter::SM, now, out);
+        return;
+    }
+    // Some firmware keeps the stop point only once it is printing: insist_on_stop_point() tries again there.
+    stop_point_ = mail_.stop_at == refill_.range().last() ? StopPoint::kept_idle : StopPoint::unset;
+    enter(Phase::loading, now, Duration::max());
+    try_loading(now, out);
+}
+
+void Feeder::try_loading(Instant now, Actions& out) {
+    if (phase_ != Phase::loading) {
+        return;
+    }
+    if (!refill_.first_fill_ready()) {
+        if (const auto intent = refill_.next_intent()) {
+            out.push_back(AskIntent{*intent});
+        }
+        return;
+    }
+    enter(Phase::verifying, now, settings_.verify_timeout);
+    refill_now(out);
+    ask(Parameter::SM, now, out);
+}
+
+void Feeder::verify(Instant now, Actions& out) {
+    const std::uint64_t sent = refill_.level().value();
+    const bool as_expected = mail_.entries + std::uint64_t{1} == sent;
+    if (!as_expected && mail_reads_ < 2) {
+        ask(Parameter::SM, now, out);
+        return;
+    }
+    if (mail_.entries == 0 && sent > 1) {
+        ask_later(Parameter::SM, now);
+        return;
+    }
+    if (!as_expected) {
+        out.push_back(Notice{NoticeCode::entries_differ, {}});
+    }
+    enter(Phase::starting, now, settings_.start_timeout);
+    out.push_back(Command{protocol::Action::start_print});
+    ask(Parameter::RS, now, out);
+}
+
+void Feeder::start_answered(Instant now, Actions& out) {
+    if (status_.machine == MachineState::printing) {
+        enter(Phase::printing, now, Duration::max());
+        pacing_.restart(now);
+        out.push_back(Notice{NoticeCode::printing_started, {}});
+        if (stop_point_ == StopPoint::unset) {
+            out.push_back(SetStopAt{refill_.range().last()});
+            ++stop_point_tries_;
+        }
+        status_due_ = now + settings_.status_interval;
+        ask(Parameter::SM, now, out);
+        return;
+    }
+    if (!status_.error.none() && status_.error.raw != error_noticed_) {
+        if (status_.error.display() == protocol::ErrorDisplay::error || is_mailing_error(status_.error)) {
+            begin_judging(now, out); // stopped already: by an error, or behind the last record of a short run
+            return;
+        }
+        out.push_back(Notice{NoticeCode::printer_warning, status_.error});
+        error_noticed_ = status_.error.raw;
+    }
+    ask_later(Parameter::RS, now);
+}
+
+} // namespace linefeed::feeder

@@ -1,0 +1,179 @@
+// The feeder while the printer prints: takes its reports, refills the FIFO, and keeps an eye on the stop point, whose
+// vanishing is the first sign of a stop: the printer forgets it together with the records in its FIFO (protocol,
+// section 5).
+#include "feeder/feeder.hpp"
+
+#include <algorithm>
+
+namespace linefeed::feeder {
+
+using protocol::MachineState;
+using protocol::Parameter;
+
+namespace {
+
+/// How often `=CM` is sent while it prints before the printer counts as one that ignores it.
+constexpr int max_stop_point_tries = 3;
+/// How long a printer may take to stop behind the stop point, or to report that it has stopped.
+constexpr Duration stop_patience = std::chrono::milliseconds{500};
+
+} // namespace
+
+void Feeder::print_status(Instant now, Actions& out) {
+    status_due_ = now + settings_.status_interval;
+    if (status_.machine != MachineState::printing) {
+        begin_judging(now, out);
+        return;
+    }
+    if (suspected_since_) {
+        stop_suspected(now, out);
+    }
+    if (phase_ != Phase::printing || status_.error.none() || status_.error.raw == error_noticed_) {
+        return;
+    }
+    error_noticed_ = status_.error.raw;
+    if (status_.error.display() == protocol::ErrorDisplay::error) {
+        begin_stop(OutcomeCode::printer_error, now, out);
+    } else {
+        out.push_back(Notice{NoticeCode::printer_warning, status_.error});
+    }
+}
+
+void Feeder::print_mail(Instant now, Actions& out) {
+    if (!stop_point_vanished(now, out)) {
+        if (!take_report(now, out)) {
+            return;
+        }
+        pacing_.printed(refill_.printed_through() - refill_.range().first().previous(), now);
+        insist_on_stop_point(out);
+        refill_now(out);
+        if (confirmed_through_ == refill_.range().last()) {
+            all_printed(now, out);
+        }
+    }
+    if (phase_ == Phase::printing) {
+        // Nothing waits for room once all is sent: only a printer without stop point must be caught quickly then.
+        const bool stops_itself = stop_point_ == StopPoint::kept || stop_point_ == StopPoint::kept_idle;
+        const Duration least = refill_.all_sent() && stops_itself ? settings_.retry_interval : Duration{0};
+        mail_due_ =
+            std::max(now, std::min(mail_due_.value_or(now), now + pacing_.poll_interval(refill_.level()))) + least;
+    }
+}
+
+bool Feeder::marker_printed() const {
+    return marker_sent_ && mail_.last_printed == refill_.range().last().next();
+}
+
+/// Takes the printed number from `mail_`. False if it cannot be right: then the line is being stopped.
+bool Feeder::take_report(Instant now, Actions& out) {
+    const bool none_yet = refill_.printed_through() < refill_.range().first();
+    left_over_passed_ = left_over_passed_ || mail_.last_printed != left_over_;
+    if (!left_over_passed_ || (none_yet && mail_.last_printed == RecordNumber{})) {
+        return true; // the number was there before this run
+    }
+    const bool behind_last = marker_printed();
+    const RecordNumber printed = behind_last ? refill_.range().last() : mail_.last_printed;
+    if (!refill_.printed(printed)) {
+        memory_lost_ = printed < refill_.printed_through();
+        begin_stop(memory_lost_ ? OutcomeCode::printer_restarted : OutcomeCode::impossible_report, now, out);
+        return false;
+    }
+    const bool finished = mail_.last_print_finished || behind_last;
+    const RecordNumber sure = finished ? printed : std::max(confirmed_through_, printed.previous());
+    if (sure > confirmed_through_) {
+        confirmed_through_ = sure;
+        out.push_back(ConfirmPrinted{sure, mail_});
+    }
+    return true;
+}
+
+/// A stop point that stood and stands no more: the printer has stopped, or its firmware drops the stop point at the
+/// start. `?RS` tells which. Until then nothing is sent and no number is believed: behind a stop the FIFO is empty, and
+/// a refill would let the printer go on behind the records it has thrown away.
+bool Feeder::stop_point_vanished(Instant now, Actions& out) {
+    if (stop_point_ != StopPoint::kept && stop_point_ != StopPoint::kept_idle) {
+        return false;
+    }
+    if (mail_.stop_at == refill_.range().last()) {
+        stop_point_ = StopPoint::kept;
+        suspected_since_.reset();
+        return false;
+    }
+    if (!suspected_since_) {
+        suspected_since_ = now;
+        ask(Parameter::RS, now, out);
+    }
+    return true;
+}
+
+/// The stop point has vanished, and the printer says that it prints.
+void Feeder::stop_suspected(Instant now, Actions& out) {
+    if (stop_point_ == StopPoint::kept_idle) {
+        stop_point_ = StopPoint::unset; // this firmware keeps it only when it is set after the start
+        suspected_since_.reset();
+    } else if (now - *suspected_since_ < stop_patience) {
+        ask_later(Parameter::RS, now);
+    } else {
+        restarted_ = mail_.last_printed != refill_.range().last();
+        begin_stop(mail_.stop_at == RecordNumber{} ? OutcomeCode::stopped_at_printer : OutcomeCode::impossible_report,
+                   now, out);
+    }
+}
+
+/// Firmware that did not keep the stop point before the start gets it again while it prints, and is left alone when
+/// that does not help.
+void Feeder::insist_on_stop_point(Actions& out) {
+    if (stop_point_ != StopPoint::unset) {
+        return;
+    }
+    if (mail_.stop_at == refill_.range().last()) {
+        stop_point_ = StopPoint::kept;
+        return;
+    }
+    if (++stop_point_misses_ % 2 != 0) {
+        return; // the first of two answers may be old
+    }
+    if (stop_point_tries_ < max_stop_point_tries) {
+        ++stop_point_tries_;
+        out.push_back(SetStopAt{refill_.range().last()});
+        return;
+    }
+    stop_point_ = StopPoint::ignored;
+    out.push_back(Notice{NoticeCode::stop_point_ignored, {}});
+}
+
+void Feeder::refill_now(Actions& out) {
+    if ((phase_ != Phase::printing && phase_ != Phase::verifying) || suspected_since_) {
+        return;
+    }
+    if (const auto intent = refill_.next_intent()) {
+        out.push_back(AskIntent{*intent});
+    }
+    const bool rest = refill_.sent_through() + refill_.ready() == refill_.range().last();
+    if (rest || Pacing::worth_sending(refill_.ready(), refill_.level(), refill_.depth())) {
+        if (const RecordRange range = refill_.take(); !range.empty()) {
+            any_sent_ = true;
+            out.push_back(SendRecords{range});
+        }
+    }
+    const bool room = refill_.level() < refill_.depth();
+    if (stop_point_ == StopPoint::ignored && refill_.all_sent() && !marker_sent_ && room &&
+        refill_.range().last() < RecordNumber::max()) {
+        marker_sent_ = true;
+        out.push_back(SendEndMarker{refill_.range().last().next()});
+    }
+}
+
+/// A printer that keeps the stop point stops by itself; any other is stopped, and so is one that takes too long.
+void Feeder::all_printed(Instant now, Actions& out) {
+    if (!all_printed_at_) {
+        all_printed_at_ = now;
+    }
+    if (stop_point_ != StopPoint::kept || now - *all_printed_at_ > stop_patience) {
+        send_stop(now, out);
+    } else if (!status_outstanding_) {
+        ask(Parameter::RS, now, out);
+    }
+}
+
+} // namespace linefeed::feeder

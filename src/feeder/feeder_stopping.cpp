@@ -1,0 +1,168 @@
+// The feeder's way from the last print, or from an interruption, to the truth: the line is stopped, the printer is
+// asked where it is, the verdict goes to the ledger, and only then anything is acknowledged or flushed.
+#include "feeder/feeder.hpp"
+#include "feeder/mailing_error.hpp"
+
+namespace linefeed::feeder {
+
+using protocol::MachineState;
+using protocol::Parameter;
+
+void Feeder::on_settled(Actions& out) {
+    if (phase_ == Phase::clearing) {
+        out.push_back(Command{protocol::Action::flush_fifo});
+        end(*cause_, out);
+    }
+}
+
+/// The line is stopped and the truth is found all the same, for people; but the ledger does not take it down, so
+/// nothing is acknowledged or flushed.
+void Feeder::on_storage_failed(Instant now, Actions& out) {
+    switch (phase_) {
+    case Phase::stopping:
+    case Phase::judging:
+        cause_ = OutcomeCode::storage_failed;
+        return;
+    case Phase::finishing:
+    case Phase::clearing:
+        end(OutcomeCode::storage_failed, out);
+        return;
+    case Phase::idle:
+    case Phase::identifying:
+    case Phase::locating:
+    case Phase::halting:
+    case Phase::opening_nozzle:
+    case Phase::acknowledging:
+    case Phase::granting:
+    case Phase::flushing:
+    case Phase::setting_stop:
+    case Phase::loading:
+    case Phase::verifying:
+    case Phase::starting:
+    case Phase::printing:
+    case Phase::ended:
+        begin_stop(OutcomeCode::storage_failed, now, out);
+        return;
+    }
+}
+
+void Feeder::request_stop(Instant now, Actions& out) {
+    begin_stop(OutcomeCode::stop_requested, now, out);
+}
+
+void Feeder::begin_stop(OutcomeCode cause, Instant now, Actions& out) {
+    switch (phase_) {
+    case Phase::idle:
+    case Phase::identifying:
+    case Phase::locating:
+    case Phase::halting:
+    case Phase::opening_nozzle:
+    case Phase::acknowledging:
+    case Phase::granting:
+        end(cause, out);
+        return;
+    case Phase::flushing:
+    case Phase::setting_stop:
+    case Phase::loading:
+    case Phase::verifying:
+    case Phase::starting:
+    case Phase::printing:
+        cause_ = cause;
+        send_stop(now, out);
+        return;
+    case Phase::stopping:
+    case Phase::judging:
+    case Phase::finishing:
+    case Phase::clearing:
+    case Phase::ended:
+        return; // already on the way
+    }
+}
+
+void Feeder::send_stop(Instant now, Actions& out) {
+    out.push_back(Command{protocol::Action::stop_print});
+    enter(Phase::stopping, now, settings_.stop_timeout);
+    ask(Parameter::RS, now, out);
+}
+
+void Feeder::begin_judging(Instant now, Actions& out) {
+    enter(Phase::judging, now, settings_.finish_timeout);
+    ask(Parameter::RS, now, out);
+}
+
+/// `?RS` once more behind the stop: what is read from now on is the truth, as long as the printer stands.
+void Feeder::judge_status(Instant now, Actions& out) {
+    if (status_.machine == MachineState::printing) {
+        restarted_ = true;
+        send_stop(now, out);
+        return;
+    }
+    ask(Parameter::SM, now, out);
+}
+
+OutcomeCode Feeder::cause_of_stop() const {
+    if (cause_) {
+        return *cause_;
+    }
+    if (!status_.error.none() && status_.error.raw != error_noticed_) {
+        return OutcomeCode::printer_error;
+    }
+    return status_.cover_open ? OutcomeCode::cover_open : OutcomeCode::stopped_at_printer;
+}
+
+void Feeder::judge(Instant now, Actions& out) {
+    const RecordRange range = refill_.range();
+    const bool shows_end_message = is_error(status_.error, protocol::error_code::last_record_printed);
+    const bool stop_point_stood = stop_point_ == StopPoint::kept || stop_point_ == StopPoint::kept_idle;
+    Evidence evidence{.mail = mail_,
+                      .printer = facts_,
+                      .end_message = shows_end_message && stop_point_stood && refill_.all_sent() && !restarted_,
+                      .uninterrupted = !memory_lost_,
+                      .restarted = restarted_};
+    if (marker_printed()) { // a blank product behind the last record
+        evidence.mail.last_printed = range.last();
+        evidence.mail.last_print_finished = true;
+    }
+    const OpenRun run{range.first(),          confirmed_through_,
+                      refill_.sent_through(), facts_.version ? facts_.version->serial_number : std::string{},
+                      total_before_,          left_over_};
+    const Verdict verdict = reconcile(run, evidence);
+    settled_ = true;
+    out.push_back(Settle{verdict, evidence, false});
+
+    cause_ = cause_of_stop();
+    const RecordNumber printed = verdict.printed.empty() ? confirmed_through_ : verdict.printed.last();
+    if (*cause_ == OutcomeCode::storage_failed) {
+        end(*cause_, out);
+    } else if (verdict.in_doubt.empty() && printed == range.last()) {
+        if (!shows_end_message) {
+            end(OutcomeCode::finished, out);
+            return;
+        }
+        acknowledged_ = status_.error.raw;
+        enter(Phase::finishing, now, settings_.finish_timeout);
+        out.push_back(Command{protocol::Action::acknowledge_errors});
+        ask(Parameter::RS, now, out);
+    } else if (mail_.entries > 0) {
+        enter(Phase::clearing, now, Duration::max()); // sent and never started: nobody may print them unseen
+    } else {
+        end(*cause_, out);
+    }
+}
+
+void Feeder::end(OutcomeCode code, Actions& out) {
+    if (phase_ == Phase::ended) {
+        return;
+    }
+    if (has_granted_records() && !any_sent_ && !settled_) {
+        out.push_back(Settle{{.basis = Basis::nothing_issued}, {.mail = mail_, .printer = facts_}, false});
+    }
+    phase_ = Phase::ended;
+    retry_at_.reset();
+    deadline_.reset();
+    mail_due_.reset();
+    status_due_.reset();
+    out.push_back(End{{code, status_.machine, status_.error, any_sent_}});
+}
+
+} // namespace linefeed::feeder

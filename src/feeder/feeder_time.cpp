@@ -1,0 +1,128 @@
+// The feeder's clockwork: what is asked now or later, the deadline of each phase, and when it wants to be woken.
+#include "feeder/feeder.hpp"
+
+#include <algorithm>
+
+namespace linefeed::feeder {
+
+using protocol::Parameter;
+
+namespace {
+
+/// Inquiries under way at once while printing: with a slow printer the answers are still as fresh as the beat.
+constexpr int max_mail_outstanding = 4;
+
+} // namespace
+
+void Feeder::enter(Phase phase, Instant now, Duration timeout) {
+    phase_ = phase;
+    mail_reads_ = 0;
+    retry_at_.reset();
+    mail_due_.reset();
+    status_due_.reset();
+    deadline_.reset();
+    if (timeout != Duration::max()) {
+        deadline_ = now + timeout;
+    }
+}
+
+void Feeder::ask(Parameter what, Instant now, Actions& out) {
+    if (what == Parameter::SM) {
+        ++mail_outstanding_;
+        mail_due_ = now + pacing_.poll_interval(refill_.level());
+    }
+    if (what == Parameter::RS) {
+        status_outstanding_ = true;
+    }
+    out.push_back(Inquire{what});
+}
+
+void Feeder::ask_later(Parameter what, Instant now) {
+    retry_at_ = now + settings_.retry_interval;
+    retry_what_ = what;
+}
+
+/// The deadline of the phase has passed.
+void Feeder::on_deadline(Instant now, Actions& out) {
+    switch (phase_) {
+    case Phase::halting:
+        end(OutcomeCode::did_not_stop, out);
+        return;
+    case Phase::opening_nozzle:
+        end(OutcomeCode::not_ready, out);
+        return;
+    case Phase::acknowledging:
+        end(OutcomeCode::error_pending, out);
+        return;
+    case Phase::flushing:
+        begin_stop(OutcomeCode::fifo_not_flushed, now, out);
+        return;
+    case Phase::verifying:
+        begin_stop(OutcomeCode::records_not_taken, now, out);
+        return;
+    case Phase::starting:
+        begin_stop(OutcomeCode::did_not_start, now, out);
+        return;
+    case Phase::stopping:
+        end(OutcomeCode::did_not_stop, out);
+        return;
+    case Phase::finishing:
+        end(OutcomeCode::finished, out);
+        return; // as in on_no_answer()
+    case Phase::locating:
+    case Phase::judging:
+        deadline_.reset();
+        return; // the print in progress had its time: locate_step() goes on without
+    case Phase::idle:
+    case Phase::identifying:
+    case Phase::granting:
+    case Phase::setting_stop:
+    case Phase::loading:
+    case Phase::printing:
+    case Phase::clearing:
+    case Phase::ended:
+        deadline_.reset();
+        return;
+    }
+}
+
+void Feeder::on_time(Instant now, Actions& out) {
+    if (deadline_ && now >= *deadline_) {
+        on_deadline(now, out);
+    }
+    if (retry_at_ && now >= *retry_at_) {
+        retry_at_.reset();
+        ask(retry_what_, now, out);
+    }
+    if (phase_ != Phase::printing) {
+        return;
+    }
+    if (mail_due_ && now >= *mail_due_ && mail_outstanding_ < max_mail_outstanding) {
+        ask(Parameter::SM, now, out);
+    }
+    if (status_due_ && now >= *status_due_ && !status_outstanding_) {
+        ask(Parameter::RS, now, out);
+    }
+}
+
+std::optional<Instant> Feeder::next_wake() const {
+    std::optional<Instant> wake;
+    const auto consider = [&wake](const std::optional<Instant>& at) {
+        if (at && (!wake || *at < *wake)) {
+            wake = at;
+        }
+    };
+    consider(deadline_);
+    consider(retry_at_);
+    if (phase_ == Phase::printing) {
+        if (mail_outstanding_ < max_mail_outstanding) {
+            consider(mail_due_);
+        }
+        if (!status_outstanding_) {
+            consider(status_due_);
+        }
+    }
+    return wake;
+}
+
+} // namespace linefeed::feeder

@@ -1,0 +1,65 @@
+#include "feeder/pacing.hpp"
+
+#include <algorithm>
+
+namespace linefeed::feeder {
+
+Pacing::Pacing(const PacingSettings& settings)
+    : settings_(settings) {
+    LINEFEED_ASSERT(Duration{0} < settings.poll_min && settings.poll_min <= settings.poll_max);
+    LINEFEED_ASSERT(settings.burst_rate > 0 && settings.polls_per_buffer > 0);
+}
+
+void Pacing::restart(Instant now) {
+    oldest_ = 0;
+    size_ = 1;
+    samples_[0] = {RecordCount{0}, now};
+}
+
+void Pacing::printed(RecordCount count, Instant now) {
+    LINEFEED_ASSERT(size_ > 0);
+    const std::size_t newest = (oldest_ + size_ - 1) % samples_kept;
+    LINEFEED_ASSERT(count >= samples_[newest].count);
+    // Samples closer together than this would let the array cover less than the window at fast polling.
+    constexpr Duration spacing = window / samples_kept * 2;
+    if (size_ > 1 && now - samples_[newest].at < spacing) {
+        return;
+    }
+    while (size_ > 1 && (size_ == samples_kept || now - samples_[oldest_].at > window)) {
+        oldest_ = (oldest_ + 1) % samples_kept;
+        --size_;
+    }
+    samples_[(oldest_ + size_) % samples_kept] = {count, now};
+    ++size_;
+}
+
+double Pacing::rate() const {
+    if (size_ < 2) {
+        return 0.0;
+    }
+    const Sample& first = samples_[oldest_];
+    const Sample& last = samples_[(oldest_ + size_ - 1) % samples_kept];
+    const double seconds = std::chrono::duration<double>(last.at - first.at).count();
+    return seconds > 0 ? static_cast<double>((last.count - first.count).value()) / seconds : 0.0;
+}
+
+Duration Pacing::poll_interval(RecordCount level) const {
+    using Seconds = std::chrono::duration<double>;
+    const double seconds_to_empty = static_cast<double>(level.value()) / std::max(rate(), settings_.burst_rate);
+    const Seconds wanted{seconds_to_empty / settings_.polls_per_buffer};
+    if (wanted >= Seconds{settings_.poll_max}) {
+        return settings_.poll_max; // before the cast: the wish of a very slow line may not fit in a Duration
+    }
+    return std::max(std::chrono::duration_cast<Duration>(wanted), settings_.poll_min);
+}
+
+bool Pacing::worth_sending(RecordCount credit, RecordCount level, RecordCount depth) {
+    if (credit == RecordCount{0}) {
+        return false;
+    }
+    const bool comfortable = level.value() * 2 >= depth.value();
+    const std::uint64_t block = std::max<std::uint64_t>(1, depth.value() / 16);
+    return !comfortable || credit.value() >= block;
+}
+
+} // namespace linefeed::feeder

@@ -1,0 +1,53 @@
+// How often to ask `?SM` and how much to refill at once (design, section 4). Asked too seldom, the FIFO runs empty;
+// asked too often, the printer's processor is kept from printing.
+#pragma once
+
+#include "base/record_number.hpp"
+#include "base/time.hpp"
+
+#include <array>
+#include <cstddef>
+
+namespace linefeed::feeder {
+
+/// Precondition: 0 < poll_min ≤ poll_max; rates and polls above 0.
+struct PacingSettings {
+    Duration poll_min = std::chrono::milliseconds{1};
+    Duration poll_max = std::chrono::milliseconds{250};
+    /// A standing line may start again at this rate (prints/s) at any moment.
+    double burst_rate = 1000.0;
+    /// Polls in the time in which the buffer would run empty.
+    double polls_per_buffer = 8.0;
+};
+
+/// Measures the print rate and derives the beat from it. Flow: restart() when printing begins, printed() for every
+/// answer.
+class Pacing {
+public:
+    explicit Pacing(const PacingSettings& settings);
+
+    void restart(Instant now);
+    /// `count` records in all have been printed by `now` (the time of the answer). Precondition: count does not fall.
+    void printed(RecordCount count, Instant now);
+    /// Prints per second over the last second or so; 0 while the line stands still.
+    [[nodiscard]] double rate() const;
+    /// How long after one inquiry the next is due, with `level` records in the printer at most.
+    [[nodiscard]] Duration poll_interval(RecordCount level) const;
+    /// Whether `credit` records should be sent now, or rather be collected into a larger block.
+    [[nodiscard]] static bool worth_sending(RecordCount credit, RecordCount level, RecordCount depth);
+
+private:
+    struct Sample {
+        RecordCount count;
+        Instant at;
+    };
+    static constexpr std::size_t samples_kept = 64;
+    static constexpr Duration window = std::chrono::seconds{1};
+
+    PacingSettings settings_;
+    std::array<Sample, samples_kept> samples_{};
+    std::size_t oldest_ = 0;
+    std::size_t size_ = 0;
+};
+
+} // namespace linefeed::feeder

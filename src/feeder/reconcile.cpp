@@ -1,0 +1,179 @@
+#include "feeder/reconcile.hpp"
+
+#include <algorithm>
+
+namespace linefeed::feeder {
+
+namespace {
+
+RecordRange behind(RecordNumber number, RecordNumber last) {
+    return number == RecordNumber::max() ? RecordRange{} : RecordRange::closed(number.next(), last);
+}
+
+Verdict all_in_doubt(const OpenRun& run) {
+    return {
+        .printed = {}, .in_doubt = behind(run.printed_through, run.issued_through), .unused = {}, .basis = Basis::none};
+}
+
+Verdict printed_through(const OpenRun& run, RecordNumber last, bool last_finished, Basis basis) {
+    Verdict verdict;
+    verdict.basis = basis;
+    const bool last_is_doubtful = !last_finished && last > run.printed_through;
+    const RecordNumber surely = last_is_doubtful ? last.previous() : last;
+    verdict.printed = behind(run.printed_through, surely);
+    if (last_is_doubtful) {
+        verdict.in_doubt = RecordRange{last, RecordCount{1}};
+    }
+    verdict.unused = behind(last, run.issued_through);
+    return verdict;
+}
+
+/// How many prints the total counter has seen since the run began; it wraps at 32 bits.
+std::optional<std::uint32_t> prints_since(const OpenRun& run, const Evidence& evidence) {
+    if (!run.total_before || !evidence.printer.total_prints) {
+        return std::nullopt;
+    }
+    return *evidence.printer.total_prints - *run.total_before;
+}
+
+/// The verdict of the counter alone: right as long as the printer has printed nothing but this run.
+std::optional<Verdict> by_counter(const OpenRun& run, const Evidence& evidence) {
+    const auto prints = prints_since(run, evidence);
+    if (!prints || *prints > (run.issued_through - run.first).value() + 1) {
+        return std::nullopt;
+    }
+    const RecordNumber last{run.first.value() + *prints - 1};
+    if (last < run.printed_through) {
+        return std::nullopt;
+    }
+    return printed_through(run, last, evidence.mail.last_print_finished, Basis::counter);
+}
+
+/// What the counter makes of the claim that records up to `last` are printed.
+enum class CounterSays { agrees, more_was_printed, too_few, nothing };
+
+CounterSays compare_counter(const OpenRun& run, const Evidence& evidence, RecordNumber last) {
+    const auto prints = prints_since(run, evidence);
+    if (!prints) {
+        return CounterSays::nothing;
+    }
+    const std::uint64_t claimed = last < run.first ? 0 : (last - run.first).value() + 1;
+    // A print that was started and not finished may or may not have been counted.
+    const std::uint64_t least = evidence.mail.last_print_finished || claimed == 0 ? claimed : claimed - 1;
+    if (*prints > claimed) {
+        return CounterSays::more_was_printed;
+    }
+    return *prints >= least ? CounterSays::agrees : CounterSays::too_few;
+}
+
+/// Nothing of the run is confirmed, and the printer reports the number that it had before the run. Either no record was
+/// printed, or the printer was switched off, or exactly this record was the last one. The counter knows.
+Verdict by_left_over_number(const OpenRun& run, const Evidence& evidence) {
+    const RecordNumber reported = evidence.mail.last_printed;
+    const bool within = run.first <= reported && reported <= run.issued_through;
+    if (evidence.uninterrupted && !within) {
+        return printed_through(run, run.printed_through, true, Basis::mail_status);
+    }
+    const auto prints = prints_since(run, evidence);
+    if (prints && *prints == 0) {
+        return printed_through(run, run.printed_through, true, Basis::mail_status_and_counter);
+    }
+    if (prints && within && compare_counter(run, evidence, reported) == CounterSays::agrees) {
+        return printed_through(run, reported, evidence.mail.last_print_finished, Basis::mail_status_and_counter);
+    }
+    return all_in_doubt(run);
+}
+
+/// The printer reports no number: it has lost its memory, or nothing was printed since it had.
+Verdict without_number(const OpenRun& run, const Evidence& evidence) {
+    const bool nothing_confirmed = run.printed_through < run.first;
+    const auto prints = prints_since(run, evidence);
+    if (nothing_confirmed && prints && *prints == 0 &&
+        (evidence.uninterrupted || run.last_printed_before == RecordNumber{})) {
+        return printed_through(run, run.printed_through, true, Basis::mail_status_and_counter);
+    }
+    if (nothing_confirmed && evidence.uninterrupted) {
+        // Under our eyes the printer printed none of these. If its counter moved all the same, one of the two is wrong.
+        return prints ? all_in_doubt(run) : printed_through(run, run.printed_through, true, Basis::mail_status);
+    }
+    return by_counter(run, evidence).value_or(all_in_doubt(run));
+}
+
+/// The number lies within what was issued and not yet confirmed.
+Verdict by_number(const OpenRun& run, const Evidence& evidence) {
+    const RecordNumber reported = evidence.mail.last_printed;
+    const CounterSays counter = compare_counter(run, evidence, reported);
+    if (evidence.restarted && counter != CounterSays::agrees) {
+        return all_in_doubt(run);
+    }
+    switch (counter) {
+    case CounterSays::agrees:
+        return printed_through(run, reported, evidence.mail.last_print_finished, Basis::mail_status_and_counter);
+    case CounterSays::too_few: // A counter that misses prints the printer itself reports does not work; the number
+                               // does.
+    case CounterSays::nothing:
+        return printed_through(run, reported, evidence.mail.last_print_finished, Basis::mail_status);
+    case CounterSays::more_was_printed: // Something else was printed: is this number still ours?
+        return evidence.uninterrupted
+                   ? printed_through(run, reported, evidence.mail.last_print_finished, Basis::mail_status)
+                   : all_in_doubt(run);
+    }
+    assertion_failed("CounterSays", __FILE__, __LINE__);
+}
+
+} // namespace
+
+bool is_another_printer(const OpenRun& run, const PrinterFacts& printer) {
+    return !run.serial_number.empty() && printer.version && !printer.version->serial_number.empty() &&
+           printer.version->serial_number != run.serial_number;
+}
+
+std::string_view to_string(Basis basis) {
+    switch (basis) {
+    case Basis::mail_status_and_counter:
+        return "mail status and total print counter";
+    case Basis::end_message:
+        return "end message 1223";
+    case Basis::mail_status:
+        return "mail status";
+    case Basis::counter:
+        return "total print counter";
+    case Basis::nothing_issued:
+        return "nothing was issued";
+    case Basis::none:
+        return "no evidence";
+    }
+    assertion_failed("Basis", __FILE__, __LINE__);
+}
+
+std::ostream& operator<<(std::ostream& out, const Verdict& verdict) {
+    return out << "printed " << verdict.printed << ", in doubt " << verdict.in_doubt << ", unused " << verdict.unused
+               << " by " << to_string(verdict.basis);
+}
+
+Verdict reconcile(const OpenRun& run, const Evidence& evidence) {
+    LINEFEED_ASSERT(run.first.value() > 0 && run.first.previous() <= run.printed_through);
+    LINEFEED_ASSERT(run.printed_through <= run.issued_through);
+    if (run.issued_through == run.printed_through) {
+        Verdict verdict;
+        verdict.basis = Basis::nothing_issued;
+        return verdict;
+    }
+    if (is_another_printer(run, evidence.printer)) {
+        return all_in_doubt(run);
+    }
+    if (evidence.end_message) {
+        return printed_through(run, run.issued_through, true, Basis::end_message);
+    }
+    const RecordNumber reported = evidence.mail.last_printed;
+    if (reported == RecordNumber{}) {
+        return without_number(run, evidence);
+    }
+    if (run.printed_through < run.first && reported == run.last_printed_before) {
+        return by_left_over_number(run, evidence);
+    }
+    const RecordNumber least = std::max(run.first, run.printed_through);
+    return least <= reported && reported <= run.issued_through ? by_number(run, evidence) : all_in_doubt(run);
+}
+
+} // namespace linefeed::feeder

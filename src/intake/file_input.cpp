@@ -1,0 +1,83 @@
+#include "intake/file_input.hpp"
+
+#include <array>
+#include <cerrno>
+#include <fcntl.h>
+#include <string>
+#include <string_view>
+#include <sys/stat.h>
+#include <system_error>
+#include <unistd.h>
+
+namespace linefeed::intake {
+
+namespace {
+
+Failure refused(const std::filesystem::path& file, const std::string& why) {
+    return {FailureKind::input, file.string() + ": " + why};
+}
+
+std::string words(int error) {
+    switch (error) {
+    case ENOENT:
+        return "there is no such file";
+    case EACCES:
+        return "no permission to read it";
+    case EIO:
+        return "the disk cannot read it";
+    default:
+        return std::generic_category().message(error);
+    }
+}
+
+} // namespace
+
+Result<FileInput> FileInput::open(const std::filesystem::path& file) {
+    // O_NONBLOCK: opening a pipe must not wait for its other end. It means nothing for regular files.
+    FileInput input{file, ::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};
+    if (input.descriptor_ < 0) {
+        return refused(file, words(errno));
+    }
+    struct stat status {};
+    if (::fstat(input.descriptor_, &status) != 0) {
+        return refused(file, words(errno));
+    }
+    if (S_ISDIR(status.st_mode)) {
+        return refused(file, "this is a directory, not a file");
+    }
+    if (!S_ISREG(status.st_mode)) {
+        return refused(file, "this is a pipe or a device: a source must be a file, so that it can be recognised later");
+    }
+    if (status.st_size == 0) {
+        return refused(file, "the file is empty");
+    }
+    input.size_ = static_cast<std::uint64_t>(status.st_size);
+    return input;
+}
+
+FileInput::~FileInput() {
+    if (descriptor_ >= 0) {
+        ::close(descriptor_);
+    }
+}
+
+Result<std::size_t> FileInput::read(std::span<char> out) {
+    while (true) {
+        const ssize_t got = ::read(descriptor_, out.data(), out.size());
+        if (got >= 0) {
+            return static_cast<std::size_t>(got);
+        }
+        if (errno != EINTR) {
+            return Failure{FailureKind::input, words(errno)};
+        }
+    }
+}
+
+bool FileInput::is_sqlite() const {
+    constexpr std::string_view magic{"SQLite format 3\0", 16};
+    std::array<char, magic.size()> beginning{};
+    const ssize_t got = ::pread(descriptor_, beginning.data(), beginning.size(), 0);
+    return got == static_cast<ssize_t>(magic.size()) && std::string_view{beginning.data(), beginning.size()} == magic;
+}
+
+} // namespace linefeed::intake

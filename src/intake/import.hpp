@@ -1,0 +1,64 @@
+// The import of a source into the spool: every row read, checked, encoded with its number, and stored in pages. Bad
+// rows refuse the whole import, with a report of each, or are left out if asked for: never guessed at.
+#pragma once
+
+#include "base/failure.hpp"
+#include "base/record_number.hpp"
+#include "intake/row_source.hpp"
+#include "protocol/mail_record.hpp"
+#include "spool/spool.hpp"
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace linefeed::intake {
+
+/// How many bad rows a report names; the rest is counted.
+inline constexpr std::size_t max_reported_rows = 100;
+
+/// One row that cannot be printed.
+struct BadRow {
+    std::uint64_t line = 0;
+    std::string column; ///< empty = the row as a whole
+    std::string reason;
+
+    friend bool operator==(const BadRow&, const BadRow&) = default;
+};
+
+struct ImportReport {
+    std::uint64_t rows = 0;       ///< read
+    std::uint64_t records = 0;    ///< stored
+    std::uint64_t bad_rows = 0;   ///< not stored
+    std::vector<BadRow> reported; ///< the first max_reported_rows of them
+};
+
+struct ImportOptions {
+    /// One for all fields, or one per column.
+    std::vector<protocol::Charset> charsets{protocol::Charset::latin1};
+    protocol::EscapeMode escapes = protocol::EscapeMode::backslash;
+    protocol::RecordProperties properties;
+    /// Leave bad rows out instead of refusing the import. The records that remain are numbered without gaps.
+    bool skip_bad = false;
+    /// Called now and then; returning false cancels the import, which then fails with FailureKind::stopped.
+    std::function<bool(const ImportReport&, double progress)> on_progress;
+};
+
+/// What came of an import.
+struct ImportOutcome {
+    ImportReport report;
+    /// The job; absent if the import was refused because of bad rows, or none was good (nothing is stored then).
+    std::optional<spool::Job> job;
+};
+
+/// Reads `source` to its end into a new job. Fails with FailureKind::input if the source breaks off, has no rows or
+/// more than there are numbers, or if the file at spec.source.path is not as the fingerprint says when it has been
+/// read; with FailureKind::storage if the spool cannot take it; nothing is stored then.
+[[nodiscard]] Result<ImportOutcome> import_source(RowSource& source, spool::Spool& spool, const spool::JobSpec& spec,
+                                                  const ImportOptions& options);
+
+/// The report as JSON: {"rows":…,"records":…,"bad_rows":…,"reported":[{"line":…,"column":…,"reason":…}]}.
+[[nodiscard]] std::string to_json(const ImportReport& report);
+
+} // namespace linefeed::intake

@@ -1,0 +1,15 @@
+// zlib's CRC-32 is the printer's (protocol, section 6).
+#include "protocol/crc32.hpp"
+
+#include <zlib.h>
+
+namespace linefeed::protocol {
+
+std::uint32_t crc32(std::string_view frame_without_cr) {
+    const uLong start = ::crc32_z(0, nullptr, 0);
+    // zlib's byte is unsigned char, which may alias any object.
+    const auto* bytes = reinterpret_cast<const Bytef*>(frame_without_cr.data());
+    return static_cast<std::uint32_t>(::crc32_z(start, bytes, frame_without_cr.size()));
+}
+
+} // namespace linefeed::protocol

@@ -1,0 +1,73 @@
+#include "simulator/printer_settings.hpp"
+
+#include <algorithm>
+
+namespace linefeed::simulator {
+namespace {
+
+/// A habit that is a switch, and its name.
+struct NamedHabit {
+    std::string_view name;
+    bool Habits::*member;
+};
+
+constexpr std::array<NamedHabit, 11> switches{{
+    {"ignore-stop-at", &Habits::ignore_stop_at},
+    {"stop-at-only-while-printing", &Habits::stop_at_only_while_printing},
+    {"stale-mail-status", &Habits::stale_mail_status},
+    {"sixth-value", &Habits::sixth_value},
+    {"five-value-status", &Habits::five_value_status},
+    {"error-bit-24", &Habits::error_bit_24},
+    {"lead-in-law", &Habits::lead_in_law},
+    {"speed-in-metres", &Habits::speed_in_metres},
+    {"standby-silent", &Habits::standby_silent},
+    {"abort-print-on-stop", &Habits::abort_print_on_stop},
+    {"escaped-paths", &Habits::escaped_paths},
+}};
+
+} // namespace
+
+bool set_habit(Habits& habits, std::string_view name) {
+    std::string wanted{name};
+    std::replace(wanted.begin(), wanted.end(), '_', '-');
+    if (wanted == "crlf" || wanted == "lfcr") {
+        habits.line_end = wanted == "crlf" ? LineEnd::cr_lf : LineEnd::lf_cr;
+        return true;
+    }
+    const auto* found = std::find_if(switches.begin(), switches.end(),
+                                     [&wanted](const NamedHabit& habit) { return habit.name == wanted; });
+    if (found == switches.end()) {
+        return false;
+    }
+    habits.*(found->member) = true;
+    return true;
+}
+
+protocol::VersionInfo versions_of(const PrinterSettings& settings) {
+    protocol::VersionInfo versions;
+    versions.serial_number = settings.serial_number;
+    versions.kernel = "6.0.0";
+    versions.font_pack = "V2.10";
+    if (settings.profile.name == "jet3") {
+        versions.firmware = "V60.0.25.0";
+        versions.type = "JET3";
+    } else if (settings.profile.name == "jet2neo") {
+        versions.firmware = "V75.0.11.2";
+        versions.type = "JET2neo";
+    } else if (settings.profile.name == "jet2neo-v71") {
+        versions.firmware = "V71.0.22.00";
+        versions.type = "JET2neo";
+    } else {
+        versions.firmware = "V62.0.9.0";
+        versions.type = "JET3up";
+    }
+    versions.fpga = "V3.14";
+    versions.rip = versions.firmware;
+    versions.sdc = "V4.07";
+    versions.fep = versions.firmware;
+    versions.system_type = versions.type;
+    versions.language_pack = "V1.30";
+    return versions;
+}
+
+} // namespace linefeed::simulator

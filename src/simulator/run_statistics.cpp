@@ -1,0 +1,133 @@
+#include "simulator/run_statistics.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <cstdio>
+#include <ostream>
+
+namespace linefeed::simulator {
+namespace {
+
+double in_ms(Duration duration) {
+    return std::chrono::duration<double, std::milli>{duration}.count();
+}
+
+std::string fixed(double value) {
+    std::array<char, 64> text{};
+    const int size = std::snprintf(text.data(), text.size(), "%.3f", value);
+    return {text.data(), static_cast<std::size_t>(size)};
+}
+
+std::string bucket_name(std::size_t bucket) {
+    const auto& borders = LeadTimeHistogram::borders;
+    const auto ms = [](Duration border) {
+        return std::to_string(std::chrono::duration_cast<std::chrono::milliseconds>(border).count());
+    };
+    const std::string from = ms(borders.at(bucket));
+    return bucket + 1 < borders.size() ? from + "-" + ms(borders.at(bucket + 1)) + " ms" : "from " + from + " ms";
+}
+
+void write_errors(std::ostream& out, const RunStatistics& run) {
+    out << "errors:";
+    for (const auto& [code, count] : run.errors) {
+        out << ' ' << code << " x " << count;
+    }
+    out << (run.errors.empty() ? " none\n" : "\n");
+}
+
+void write_lead_times(std::ostream& out, const RunStatistics& run) {
+    const auto smallest = run.lead_times.smallest();
+    out << "smallest lead time before a PrintGo: " << (smallest ? fixed(in_ms(*smallest)) + " ms" : "none") << '\n';
+    if (smallest) {
+        out << "lead times:\n";
+    }
+    for (std::size_t bucket = 0; bucket < LeadTimeHistogram::borders.size(); ++bucket) {
+        if (run.lead_times.count(bucket) > 0) {
+            out << "  " << bucket_name(bucket) << ": " << run.lead_times.count(bucket) << '\n';
+        }
+    }
+}
+
+} // namespace
+
+void RunStatistics::add(const Printed& print) {
+    ++prints;
+    numbers.add(print.number);
+    if (print.lead_time) {
+        lead_times.add(*print.lead_time);
+    } else {
+        ++repeats;
+    }
+}
+
+void RunStatistics::add(const Underrun& underrun) {
+    ++underruns;
+    if (underrun.lead_time) {
+        lead_times.add(*underrun.lead_time);
+    }
+}
+
+void RunStatistics::add(const ErrorRaised& error) {
+    ++errors[error.error.code_without_bit_24()];
+}
+
+void write_summary(std::ostream& out, const RunStatistics& run) {
+    out << "linefeed-sim: summary\n";
+    out << "prints: " << run.prints << " (numbers " << run.numbers.smallest() << " to " << run.numbers.largest()
+        << "; printed again: " << run.repeats << "; broken off: " << run.aborted << ")\n";
+    out << "doubles: " << run.numbers.doubles() << ", gaps: " << run.numbers.gaps()
+        << ", missing numbers: " << run.numbers.missing() << '\n';
+    out << "unprinted products: " << run.unprinted_products << '\n';
+    write_errors(out, run);
+    out << "PrintGos without a record in time: " << run.underruns << '\n';
+    write_lead_times(out, run);
+    out << "highest fill: " << run.highest_fill << " of " << run.depth << " records; lowest fill at a PrintGo: ";
+    if (run.lowest_fill == UINT32_MAX) {
+        out << "none\n";
+    } else {
+        out << run.lowest_fill << " records\n";
+    }
+    out << "connections: " << run.connections << ", damaged frames: " << run.bad_frames << '\n';
+    out << "platform stalls: " << run.platform_stalls << ", longest " << fixed(in_ms(run.longest_stall)) << " ms\n";
+}
+
+std::string summary_json(const RunStatistics& run) {
+    using nlohmann::json;
+    json histogram = json::array();
+    const auto& borders = LeadTimeHistogram::borders;
+    for (std::size_t i = 0; i < borders.size(); ++i) {
+        histogram.push_back({{"from_ms", in_ms(borders.at(i))},
+                             {"to_ms", i + 1 < borders.size() ? json(in_ms(borders.at(i + 1))) : json()},
+                             {"count", run.lead_times.count(i)}});
+    }
+    json errors = json::object();
+    for (const auto& [code, count] : run.errors) {
+        errors[std::to_string(code)] = count;
+    }
+    const auto smallest = run.lead_times.smallest();
+    const json summary{
+        {"prints", run.prints},
+        {"first_number", run.numbers.smallest().value()},
+        {"last_number", run.numbers.largest().value()},
+        {"printed_again", run.repeats},
+        {"broken_off", run.aborted},
+        {"doubles", run.numbers.doubles()},
+        {"gaps", run.numbers.gaps()},
+        {"missing_numbers", run.numbers.missing()},
+        {"unprinted_products", run.unprinted_products},
+        {"errors", errors},
+        {"underruns", run.underruns},
+        {"smallest_lead_ms", smallest ? json(in_ms(*smallest)) : json()},
+        {"lead_histogram", histogram},
+        {"depth", run.depth},
+        {"highest_fill", run.highest_fill},
+        {"lowest_fill", run.lowest_fill == UINT32_MAX ? json() : json(run.lowest_fill)},
+        {"connections", run.connections},
+        {"damaged_frames", run.bad_frames},
+        {"platform_stalls", run.platform_stalls},
+        {"longest_stall_ms", in_ms(run.longest_stall)},
+    };
+    return summary.dump();
+}
+
+} // namespace linefeed::simulator

@@ -1,0 +1,102 @@
+// The whole machine behind linefeed-sim: printer model, conveyor, network side, tape and the faults ordered for the
+// run, in one thread of an io_context (the tape's writer has its own).
+#pragma once
+
+#include "simulator/conveyor.hpp"
+#include "simulator/printer_model.hpp"
+#include "simulator/run_statistics.hpp"
+#include "simulator/server.hpp"
+#include "simulator/tape.hpp"
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/signal_set.hpp>
+#include <boost/asio/steady_timer.hpp>
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace linefeed::simulator {
+
+/// What goes wrong when the printer has printed `at_print` products of this run.
+struct Fault {
+    enum class Kind {
+        operator_stop,   ///< the operator presses stop
+        error,           ///< error `code` stops the printing
+        cover_open,      ///< the cover is opened
+        cut_connections, ///< all connections are closed
+        mute,            ///< from now on nothing is answered
+        power_cycle,     ///< mains off and on
+    };
+    Kind kind = Kind::operator_stop;
+    std::uint64_t at_print = 0;
+    std::uint32_t code = 0; ///< for error
+};
+
+/// One run of the simulator.
+struct SimulatorSettings {
+    PrinterSettings printer;
+    ConveyorSettings conveyor;
+    ServerSettings server;
+    std::string host = "127.0.0.1";
+    std::string port = "3000";
+    protocol::Charset charset = protocol::Charset::latin1; ///< how the job's font reads the bytes, for the tape
+    std::optional<std::string> tape;
+    std::optional<std::uint64_t>
+        products; ///< the conveyor stops after so many PrintGos that found the printer printing
+    std::optional<std::chrono::seconds> exit_when_idle; ///< ends after so long without a connection
+    std::vector<Fault> faults;
+};
+
+/// Flow: open(), announce the address, run() until a signal (or idleness) ends it, then statistics().
+class Simulator : private ServerHandler {
+public:
+    explicit Simulator(SimulatorSettings settings);
+
+    /// Opens tape and socket; the address it listens on.
+    [[nodiscard]] Result<std::string> open();
+    /// Serves until SIGINT or SIGTERM. The failure if the tape is not complete.
+    [[nodiscard]] Result<void> run();
+    [[nodiscard]] const RunStatistics& statistics() const { return statistics_; }
+
+private:
+    void on_connected(ConnectionId connection) override;
+    void on_frame(ConnectionId connection, const protocol::Frame& frame, Instant now) override;
+    void on_damaged_bytes(ConnectionId connection) override;
+    void on_disconnected(ConnectionId connection) override;
+
+    void carry_out(Instant now);
+    void carry_out_one(Effect& effect);
+    void record(const Printed& print);
+    void cause_due_faults(Instant now);
+    void cause(const Fault& fault, Instant now);
+    void move_conveyor(Instant now);
+    void wait_for_product();
+    void product_at_sensor();
+    void wait_for_model();
+    void wait_for_idleness();
+    void shut_down();
+
+    SimulatorSettings settings_;
+    boost::asio::io_context io_{1};
+    PrinterModel model_;
+    Conveyor conveyor_;
+    Server server_;
+    std::unique_ptr<Tape> tape_;
+    RunStatistics statistics_;
+    std::vector<Effect> effects_;
+    boost::asio::steady_timer conveyor_timer_{io_};
+    boost::asio::steady_timer model_timer_{io_};
+    boost::asio::steady_timer idle_timer_{io_};
+    boost::asio::signal_set signals_{io_};
+    std::int64_t wall_minus_steady_ns_ = 0;
+    std::optional<Instant> model_timer_due_;
+    std::optional<Instant> conveyor_timer_due_;
+    std::uint64_t products_ = 0; ///< PrintGos that found the printer printing
+    bool muted_ = false;
+};
+
+} // namespace linefeed::simulator

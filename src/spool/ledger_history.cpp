@@ -1,0 +1,81 @@
+#include "spool/ledger_history.hpp"
+
+#include <optional>
+
+namespace linefeed::spool {
+
+namespace {
+
+std::optional<RecordState> state_after(LedgerKind kind) {
+    switch (kind) {
+    case LedgerKind::run_started:
+    case LedgerKind::run_ended:
+        return std::nullopt;
+    case LedgerKind::intent:
+        return RecordState::open;
+    case LedgerKind::printed:
+        return RecordState::printed;
+    case LedgerKind::unused:
+        return RecordState::unused;
+    case LedgerKind::in_doubt:
+        return RecordState::in_doubt;
+    case LedgerKind::skipped:
+        return RecordState::skipped;
+    case LedgerKind::released:
+        return RecordState::released;
+    }
+    assertion_failed("LedgerKind", __FILE__, __LINE__);
+}
+
+} // namespace
+
+void LedgerHistory::add(const LedgerRow& row) {
+    const auto state = state_after(row.entry.kind);
+    const RunId run = row.entry.run;
+    const auto last_report = last_report_ns_.try_emplace(run, row.time_ns).first->second;
+    if (row.entry.kind != LedgerKind::intent) {
+        last_report_ns_[run] = row.time_ns;
+    }
+    if (!state || row.entry.range.empty()) {
+        return;
+    }
+    cut_out(row.entry.range);
+    by_first_[row.entry.range.first()] = {row.entry.range, *state, run, last_report, row.time_ns, row.entry.evidence};
+}
+
+/// Shortens, splits or removes what is known about `range`.
+void LedgerHistory::cut_out(RecordRange range) {
+    auto next = by_first_.upper_bound(range.first());
+    if (next != by_first_.begin()) {
+        --next;
+    }
+    while (next != by_first_.end() && next->first <= range.last()) {
+        const HistoryStretch old = next->second;
+        if (old.range.last() < range.first()) {
+            ++next;
+            continue;
+        }
+        next = by_first_.erase(next);
+        if (old.range.first() < range.first()) {
+            HistoryStretch before = old;
+            before.range = RecordRange::closed(old.range.first(), range.first().previous());
+            by_first_[before.range.first()] = before;
+        }
+        if (old.range.last() > range.last()) {
+            HistoryStretch after = old;
+            after.range = RecordRange::closed(range.last().next(), old.range.last());
+            by_first_[after.range.first()] = after;
+        }
+    }
+}
+
+std::vector<HistoryStretch> LedgerHistory::stretches() const {
+    std::vector<HistoryStretch> result;
+    result.reserve(by_first_.size());
+    for (const auto& [first, stretch] : by_first_) {
+        result.push_back(stretch);
+    }
+    return result;
+}
+
+} // namespace linefeed::spool

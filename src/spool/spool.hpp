@@ -1,0 +1,122 @@
+// The spool: jobs, pages of encoded records and the print ledger in one SQLite database (design, section 6). WAL mode,
+// synchronous=FULL, one writer connection that also checkpoints, no mmap. One object belongs to one thread. What a
+// function has returned as written survives a power failure.
+#pragma once
+
+#include "base/failure.hpp"
+#include "base/record_number.hpp"
+#include "base/record_page.hpp"
+#include "spool/job.hpp"
+#include "spool/ledger.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace linefeed::spool {
+
+/// How a spool is opened.
+struct SpoolOptions {
+    /// Wall clock, ns since the Unix epoch; tests bring their own.
+    std::function<std::int64_t()> wall_clock_ns;
+    /// SQLite VFS; empty = the default. Tests bring faulty ones.
+    std::string vfs;
+};
+
+/// A job's place in the spool while it is imported. Pages come in order; commit() makes the job ready in one step;
+/// without it the job vanishes (now, or when the spool is opened again after a crash). Must not outlive its Spool.
+class Spool;
+class JobImport {
+public:
+    JobImport(JobImport&&) noexcept;
+    JobImport& operator=(JobImport&&) noexcept;
+    JobImport(const JobImport&) = delete;
+    JobImport& operator=(const JobImport&) = delete;
+    /// Removes the job unless committed.
+    ~JobImport();
+
+    [[nodiscard]] JobId id() const;
+    /// Precondition: page.first follows the last page (base + 1 for the first), page not empty.
+    [[nodiscard]] Result<void> add(const RecordPage& page);
+    /// Makes the job ready, durably. `import_report` is JSON (may be empty). Fails with FailureKind::input if no page
+    /// was added.
+    [[nodiscard]] Result<Job> commit(std::string import_report);
+
+private:
+    friend class Spool;
+    struct State;
+    explicit JobImport(std::unique_ptr<State> state);
+    std::unique_ptr<State> state_;
+};
+
+/// Flow: open(), then any of the rest. Not thread safe; several processes may not write the same spool (open() takes a
+/// lock and fails with FailureKind::storage, saying who holds it).
+class Spool {
+public:
+    /// Opens or creates the database, applies the migrations of schema/, checks its small tables (PRAGMA quick_check),
+    /// removes imports that were not finished.
+    [[nodiscard]] static Result<Spool> open(const std::filesystem::path& path, SpoolOptions options);
+    /// Opens a spool for reading, also while another process writes it. Everything that writes fails. FailureKind::usage if there
+    /// is none at `path`.
+    [[nodiscard]] static Result<Spool> open_for_reading(const std::filesystem::path& path, SpoolOptions options);
+    Spool(Spool&&) noexcept;
+    Spool& operator=(Spool&&) noexcept;
+    Spool(const Spool&) = delete;
+    Spool& operator=(const Spool&) = delete;
+    ~Spool();
+
+    // Jobs
+    [[nodiscard]] Result<JobImport> begin_import(const JobSpec& spec);
+    [[nodiscard]] Result<std::vector<Job>> jobs();
+    [[nodiscard]] Result<std::optional<Job>> job(JobId id);
+    /// The ready job that was imported from exactly this source with this layout.
+    [[nodiscard]] Result<std::optional<Job>> find_by_source(const JobSpec& spec);
+    /// The ready jobs with this content and layout, whatever file they came from, oldest first.
+    [[nodiscard]] Result<std::vector<Job>> find_by_content(const std::string& content_sha256,
+                                                           const std::string& layout);
+    /// The ready jobs that were imported from this path, oldest first.
+    [[nodiscard]] Result<std::vector<Job>> find_by_path(const std::string& path);
+    /// The same content was found under a new fingerprint (file touched or moved).
+    [[nodiscard]] Result<void> update_source(JobId id, const SourceFingerprint& source);
+    /// Removes a job that has no ledger rows, with its pages.
+    [[nodiscard]] Result<void> remove_job(JobId id);
+
+    // Pages
+    /// The page that holds `number`, its checksum verified.
+    [[nodiscard]] Result<RecordPage> read_page(JobId id, RecordNumber number);
+
+    // Ledger
+    /// Starts a run: appends run_started (and with it reserves the RunId), durable at return.
+    [[nodiscard]] Result<RunId> begin_run(JobId job, RecordRange range, const std::string& evidence);
+    /// Appends rows in one transaction, durable at return. A row that contradicts the ledger (LedgerState::apply) is an
+    /// internal failure and nothing is written.
+    [[nodiscard]] Result<void> append(JobId job, std::span<const LedgerEntry> entries);
+    /// The state of the job's records; costs the same however long the ledger is.
+    [[nodiscard]] Result<LedgerState> ledger_state(JobId job);
+    /// Rows of a job in order, from `after` (exclusive; 0 = from the start), at most `limit`.
+    [[nodiscard]] Result<std::vector<LedgerRow>> ledger_rows(JobId job, std::int64_t after, std::size_t limit);
+    /// The run_started row of the newest run of the job, and whether a run_ended row follows it.
+    struct LastRun {
+        LedgerRow started;
+        bool ended = false;
+    };
+    [[nodiscard]] Result<std::optional<LastRun>> last_run(JobId job);
+    /// Recomputes the whole chain and the stored segments; the failure names the first row that is wrong.
+    [[nodiscard]] Result<std::int64_t> verify_ledger();
+
+    /// Copies what is in the WAL into the database. Called off the critical path; a busy reader only postpones it.
+    [[nodiscard]] Result<void> checkpoint();
+
+private:
+    friend class JobImport;
+    struct State;
+    explicit Spool(std::unique_ptr<State> state);
+    std::unique_ptr<State> state_;
+};
+
+} // namespace linefeed::spool

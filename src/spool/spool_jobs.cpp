@@ -1,0 +1,228 @@
+// The jobs of a spool: what was imported, from where, and which of them is meant by a source.
+#include "spool/spool_state.hpp"
+
+namespace linefeed::spool {
+
+namespace {
+
+constexpr std::string_view select_jobs = "SELECT id, source_path, source_size, source_modified_ns, source_inode, "
+                                         "source_companion, layout, base, state, records, "
+                                         "content_sha256, frame_bytes, created_ns, import_report FROM jobs ";
+
+Result<Job> job_from(const Statement& row, const std::string& path) {
+    Job job;
+    job.id = JobId{row.number(0)};
+    job.spec.source = {std::string{row.text(1)}, static_cast<std::uint64_t>(row.number(2)), row.number(3),
+                       static_cast<std::uint64_t>(row.number(4)), std::string{row.text(5)}};
+    job.spec.layout = row.text(6);
+    const auto base = stored_range(row.number(7), 1);
+    const std::int64_t records = row.number(9);
+    const auto range = records == 0 ? RecordRange{} : stored_range(row.number(7) + 1, records);
+    const std::string_view state = row.text(8);
+    if (!base || !range || (state != "ready" && state != "importing")) {
+        return Failure{FailureKind::storage,
+                       path + ": the spool is damaged: job " + std::to_string(row.number(0)) + " cannot be read"};
+    }
+    job.spec.base = base->first();
+    job.records = *range;
+    job.state = state == "ready" ? ImportState::ready : ImportState::importing;
+    job.content_sha256 = row.text(10);
+    job.frame_bytes = static_cast<std::uint64_t>(row.number(11));
+    job.created_ns = row.number(12);
+    job.import_report = row.text(13);
+    return job;
+}
+
+Result<std::vector<Job>> read_jobs(Statement& statement, const std::string& path) {
+    std::vector<Job> jobs;
+    while (true) {
+        const auto more = statement.step();
+        if (!more) {
+            return more.error();
+        }
+        if (!*more) {
+            return jobs;
+        }
+        auto job = job_from(statement, path);
+        if (!job) {
+            return job.error();
+        }
+        jobs.push_back(std::move(*job));
+    }
+}
+
+} // namespace
+
+std::optional<RecordRange> stored_range(std::int64_t first, std::int64_t records) {
+    constexpr std::int64_t max = RecordNumber::max().value();
+    if (first < 0 || first > max || records < 0 || records > max - first + 1) {
+        return std::nullopt;
+    }
+    return RecordRange{RecordNumber{static_cast<std::uint32_t>(first)},
+                       RecordCount{static_cast<std::uint64_t>(records)}};
+}
+
+Result<std::vector<Job>> Spool::jobs() {
+    static const std::string sql = std::string{select_jobs} + "ORDER BY id";
+    auto statement = state_->database->prepare(sql.c_str());
+    if (!statement) {
+        return statement.error();
+    }
+    return read_jobs(*statement, state_->database->path());
+}
+
+Result<std::optional<Job>> Spool::job(JobId id) {
+    static const std::string sql = std::string{select_jobs} + "WHERE id = ?1";
+    auto statement = state_->database->prepare(sql.c_str());
+    if (!statement) {
+        return statement.error();
+    }
+    auto found = read_jobs(statement->bind(1, static_cast<std::int64_t>(id)), state_->database->path());
+    if (!found) {
+        return found.error();
+    }
+    return found->empty() ? std::optional<Job>{} : std::optional{std::move(found->front())};
+}
+
+Result<std::optional<Job>> Spool::find_by_source(const JobSpec& spec) {
+    static const std::string sql =
+        std::string{select_jobs} +
+        "WHERE source_path = ?1 AND source_size = ?2 AND source_modified_ns = ?3 AND source_inode = ?4 "
+        "AND source_companion = ?5 AND layout = ?6 AND base = ?7 AND state = 'ready' "
+        "ORDER BY id DESC LIMIT 1";
+    auto statement = state_->database->prepare(sql.c_str());
+    if (!statement) {
+        return statement.error();
+    }
+    statement->bind(1, spec.source.path)
+        .bind(2, static_cast<std::int64_t>(spec.source.size_bytes))
+        .bind(3, spec.source.modified_ns)
+        .bind(4, static_cast<std::int64_t>(spec.source.inode))
+        .bind(5, spec.source.companion)
+        .bind(6, spec.layout)
+        .bind(7, std::int64_t{spec.base.value()});
+    auto found = read_jobs(*statement, state_->database->path());
+    if (!found) {
+        return found.error();
+    }
+    return found->empty() ? std::optional<Job>{} : std::optional{std::move(found->front())};
+}
+
+Result<std::vector<Job>> Spool::find_by_content(const std::string& content_sha256, const std::string& layout) {
+    static const std::string sql =
+        std::string{select_jobs} + "WHERE content_sha256 = ?1 AND layout = ?2 AND state = 'ready' ORDER BY id";
+    auto statement = state_->database->prepare(sql.c_str());
+    if (!statement) {
+        return statement.error();
+    }
+    return read_jobs(statement->bind(1, content_sha256).bind(2, layout), state_->database->path());
+}
+
+Result<std::vector<Job>> Spool::find_by_path(const std::string& path) {
+    static const std::string sql = std::string{select_jobs} + "WHERE source_path = ?1 AND state = 'ready' ORDER BY id";
+    auto statement = state_->database->prepare(sql.c_str());
+    if (!statement) {
+        return statement.error();
+    }
+    return read_jobs(statement->bind(1, path), state_->database->path());
+}
+
+Result<void> Spool::update_source(JobId id, const SourceFingerprint& source) {
+    if (auto writable = state_->check_writable(); !writable) {
+        return writable;
+    }
+    auto statement =
+        state_->database->prepare("UPDATE jobs SET source_path = ?2, source_size = ?3, source_modified_ns = ?4, "
+                                  "source_inode = ?5, source_companion = ?6 WHERE id = ?1");
+    if (!statement) {
+        return statement.error();
+    }
+    statement->bind(1, static_cast<std::int64_t>(id))
+        .bind(2, source.path)
+        .bind(3, static_cast<std::int64_t>(source.size_bytes))
+        .bind(4, source.modified_ns)
+        .bind(5, static_cast<std::int64_t>(source.inode))
+        .bind(6, source.companion);
+    if (auto done = statement->run(); !done) {
+        return state_->failed_write(done.error());
+    }
+    return {};
+}
+
+Result<void> Spool::remove_job(JobId id) {
+    if (auto writable = state_->check_writable(); !writable) {
+        return writable;
+    }
+    {
+        auto rows = state_->database->prepare("SELECT 1 FROM ledger WHERE job = ?1 LIMIT 1");
+        if (!rows) {
+            return rows.error();
+        }
+        const auto used = rows->bind(1, static_cast<std::int64_t>(id)).step();
+        if (!used) {
+            return used.error();
+        }
+        if (*used) {
+            return Failure{FailureKind::usage, "job " + std::to_string(static_cast<std::int64_t>(id)) +
+                                                   " stands in the print ledger: it cannot be removed"};
+        }
+    }
+    state_->ledgers.erase(static_cast<std::int64_t>(id));
+    if (auto done = state_->remove_job_in_steps(id); !done) {
+        return state_->failed_write(done.error());
+    }
+    return {};
+}
+
+Result<void> Spool::State::remove_job_in_steps(JobId id) {
+    const auto job = static_cast<std::int64_t>(id);
+    {
+        auto mark = database->prepare("UPDATE jobs SET state = 'importing' WHERE id = ?1");
+        if (!mark) {
+            return mark.error();
+        }
+        if (auto done = mark->bind(1, job).run(); !done) {
+            return done;
+        }
+    }
+    while (true) {
+        {
+            auto pages = database->prepare(
+                "DELETE FROM pages WHERE id IN (SELECT id FROM pages WHERE job = ?1 ORDER BY first LIMIT 256)");
+            if (!pages) {
+                return pages.error();
+            }
+            if (auto done = pages->bind(1, job).run(); !done) {
+                return done;
+            }
+        }
+        if (database->changes() == 0) {
+            break;
+        }
+        if (auto copied = database->checkpoint_passive(); !copied) {
+            return copied.error();
+        }
+    }
+    auto row = database->prepare("DELETE FROM jobs WHERE id = ?1");
+    if (!row) {
+        return row.error();
+    }
+    return row->bind(1, job).run();
+}
+
+Result<void> Spool::State::remove_unfinished_imports() {
+    while (true) {
+        const auto id = database->query_number("SELECT id FROM jobs WHERE state = 'importing' LIMIT 1");
+        if (!id) {
+            return id.error();
+        }
+        if (*id == 0) {
+            return {};
+        }
+        if (auto done = remove_job_in_steps(JobId{*id}); !done) {
+            return done;
+        }
+    }
+}
+
+} // namespace linefeed::spool

@@ -1,0 +1,64 @@
+"""The direction of the design as data: which folder of src/ may use which, and where outside libraries may appear.
+
+The checker (include_checker.py) reads these tables only, so a change of the design is a change of this file.
+"""
+
+# Folder of src/ -> folders it may include, besides itself.
+MAY_USE = {
+    "base": set(),
+    "protocol": {"base"},
+    "feeder": {"base", "protocol"},
+    "session": {"base", "protocol", "feeder"},
+    "link": {"base", "session"},
+    "spool": {"base"},
+    "intake": {"base", "protocol", "spool"},
+    "simulator": {"base", "protocol"},
+    "daemon": {"base", "protocol", "feeder", "session", "link", "spool"},
+    "cli": {"base", "protocol", "feeder", "session", "link", "spool", "intake", "daemon"},
+}
+
+# Folder -> folder -> the only headers of the second that the first may include: the feeder knows the message types, never bytes.
+ONLY_HEADERS = {
+    "feeder": {"protocol": {"commands.hpp", "messages.hpp", "printer_error.hpp"}},
+}
+
+# Files that touch the outside world within a folder that is otherwise pure, by name without extension.
+EDGES = {
+    "base": {"asio", "assert"},
+    "simulator": {"client_session", "server", "simulator", "steady_instant", "tape", "linefeed_sim_main"},
+}
+
+# No I/O, no clock, no random numbers, no thread: facts and time come in, what to do goes out.
+PURE_FOLDERS = {"base", "protocol", "feeder", "session", "simulator"}
+
+# Headers that no pure file may include, as regular expressions over the name between < and >.
+IMPURE_HEADERS = [
+    r"sqlite3(ext)?\.h",
+    r"boost/(asio|beast|lockfree|thread)(/.*|\.hpp)?",
+    r"thread|stop_token|mutex|shared_mutex|condition_variable|future|semaphore|latch|barrier|atomic",
+    r"random|ctime|time\.h|csignal|signal\.h|pthread\.h",
+    r"filesystem|fstream|iostream|syncstream",
+    r"sys/.*|netinet/.*|arpa/.*|linux/.*|unistd\.h|fcntl\.h|poll\.h|termios\.h|netdb\.h",
+]
+
+# The same for what is written in the code (comments and string literals are taken out first).
+IMPURE_CODE = {
+    r"\b\w*[cC]lock\w*\s*::\s*now\s*\(": "reads a clock",
+    r"::\s*now\s*\(": "reads a clock",
+    r"\b(clock_gettime|gettimeofday|nanosleep|usleep)\s*\(": "reads a clock or sleeps",
+    r"\bstd\s*::\s*(time|clock|rand|srand)\s*\(": "reads a clock or draws a random number",
+    r"\bthis_thread\b": "knows of threads",
+    r"\brandom_device\b|\bmt19937": "draws random numbers",
+    r"\b(socket|connect|recv|send)\s*\(\s*AF_": "opens a socket",
+    r"\bstd\s*::\s*(cout|cerr|clog|cin)\b": "writes to a terminal",
+    r"\b(getenv|fopen)\s*\(": "reads its surroundings",
+}
+
+# Outside library -> the only folders that may include it.
+LIBRARY_FOLDERS = {
+    r"sqlite3(ext)?\.h": {"spool", "intake"},
+    r"boost/(asio|beast)(/.*|\.hpp)?": {"base", "link", "simulator", "daemon"},
+    r"CLI/.*": {"cli", "simulator"},
+    r"openssl/.*": {"spool"},
+    r"nlohmann/.*": {"intake", "simulator", "daemon", "cli"},
+}

@@ -1,0 +1,73 @@
+// The names of the protocol, against a list written down from the manual by hand.
+#include "protocol/commands.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <set>
+#include <string>
+#include <utility>
+
+namespace linefeed::protocol {
+namespace {
+
+constexpr std::array<std::pair<Action, std::string_view>, 22> actions_of_the_manual{{
+    {Action::start_print, "GO"},        {Action::stop_print, "ST"},    {Action::nozzle_open, "NO"},
+    {Action::nozzle_close, "NC"},       {Action::motor_open, "MO"},    {Action::motor_close, "MC"},
+    {Action::reset_counters, "RC"},     {Action::factory_reset, "FA"}, {Action::reload_fonts, "LF"},
+    {Action::acknowledge_errors, "EQ"}, {Action::user_suspend, "US"},  {Action::user_resume, "UR"},
+    {Action::power_on, "PO"},           {Action::power_off, "PF"},     {Action::restart, "RM"},
+    {Action::flush_fifo, "FF"},         {Action::display_off, "W0"},   {Action::display_on, "W1"},
+    {Action::length_on, "LN"},          {Action::echo_on, "EM"},       {Action::crc_ok, "OK"},
+    {Action::end_of_data, "EN"},
+}};
+
+constexpr std::string_view parameters_of_the_manual =
+    "AC CC CM CO CP DL DS EL ET EV EX FC FL GW HS IC JB JL MC MR MS NR OC PR RC RS SC SH SM SW VS";
+
+TEST(Commands, shouldKnowEveryActionOfTheManualBothWays) {
+    for (const auto& [action, letters] : actions_of_the_manual) {
+        EXPECT_EQ(code(action), letters);
+        EXPECT_EQ(action_from_code(letters), action) << letters;
+    }
+}
+
+TEST(Commands, shouldKnowEveryParameterOfTheManualBothWays) {
+    std::size_t index = 0;
+    for (std::size_t at = 0; at < parameters_of_the_manual.size(); at += 3, ++index) {
+        const std::string_view letters = parameters_of_the_manual.substr(at, 2);
+        const auto parameter = parameter_from_code(letters);
+        ASSERT_TRUE(parameter) << letters;
+        EXPECT_EQ(static_cast<std::size_t>(*parameter), index) << letters;
+        EXPECT_EQ(code(*parameter), letters);
+    }
+    EXPECT_EQ(index, 31U);
+    EXPECT_EQ(parameter_from_code("RS"), Parameter::RS);
+    EXPECT_EQ(parameter_from_code("VS"), Parameter::VS);
+}
+
+TEST(Commands, shouldNotKnowOtherCodes) {
+    for (const char* const letters : {"", "G", "GOO", "go", "XX", "SL"}) {
+        EXPECT_EQ(action_from_code(letters), std::nullopt) << letters;
+        EXPECT_EQ(parameter_from_code(letters), std::nullopt) << letters;
+    }
+    EXPECT_EQ(action_from_code("SM"), std::nullopt);
+    EXPECT_EQ(parameter_from_code("GO"), std::nullopt);
+}
+
+TEST(Commands, shouldDescribeEachDifferently) {
+    std::set<std::string_view> descriptions;
+    for (const auto& [action, letters] : actions_of_the_manual) {
+        descriptions.insert(description(action));
+    }
+    for (int parameter = 0; parameter <= static_cast<int>(Parameter::VS); ++parameter) {
+        descriptions.insert(description(static_cast<Parameter>(parameter)));
+    }
+    EXPECT_EQ(descriptions.size(), 22U + 31U);
+    EXPECT_FALSE(descriptions.contains(""));
+    EXPECT_EQ(description(Parameter::SM), "mailing status");
+    EXPECT_EQ(description(Action::flush_fifo), "flush the mailing FIFO");
+}
+
+} // namespace
+} // namespace linefeed::protocol
