@@ -26,7 +26,7 @@ feeder::FeederPlan plan_for(const std::optional<OpenIssue>& open, spool::JobId j
 JobRun::JobRun(spool::Spool& spool, const spool::Job& job, RecordRange wanted, std::optional<OpenIssue> open,
                const JobRunSettings& settings)
     : settings_(settings)
-    , store_(spool, job.id, LedgerKeeper{spool, job.id, wanted, link::to_string(settings.printer), open})
+    , store_(StoreWork{spool, job.id, LedgerKeeper{spool, job.id, wanted, link::to_string(settings.printer), open}})
     , session_(settings.session, plan_for(open, job.id))
     , link_(context_, session_, *this)
     , replies_(context_, ::dup(store_.replies_signal().descriptor())) {}
@@ -169,21 +169,7 @@ void JobRun::wait_for_replies() {
 void JobRun::take_replies() {
     StoreReply reply;
     while (!finished() && store_.pop(reply)) {
-        link_.call([&reply](Session& session, Instant at, Effects& effects) {
-            if (const auto* page = std::get_if<PageReady>(&reply)) {
-                session.on_page(page->page, at, effects);
-            } else if (const auto* durable = std::get_if<Durable>(&reply)) {
-                session.on_durable(durable->through, at, effects);
-            } else if (const auto* granted = std::get_if<Granted>(&reply)) {
-                session.on_granted(granted->range, granted->durable_through, at, effects);
-            } else if (const auto* refused = std::get_if<Refused>(&reply)) {
-                session.on_refused(refused->why, at, effects);
-            } else if (std::holds_alternative<Settled>(reply)) {
-                session.on_settled(at, effects);
-            } else if (std::holds_alternative<StorageFailed>(reply)) {
-                session.on_storage_failed(at, effects);
-            }
-        });
+        link_.call([&reply](Session& session, Instant at, Effects& effects) { deliver(reply, session, at, effects); });
         push_cumulative();
     }
 }

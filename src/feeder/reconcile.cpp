@@ -12,7 +12,7 @@ RecordRange behind(RecordNumber number, RecordNumber last) {
 
 Verdict all_in_doubt(const OpenRun& run) {
     return {
-        .printed = {}, .in_doubt = behind(run.printed_through, run.issued_through), .unused = {}, .basis = Basis::none};
+        .in_doubt = behind(run.printed_through, run.issued_through), .basis = Basis::none};
 }
 
 Verdict printed_through(const OpenRun& run, RecordNumber last, bool last_finished, Basis basis) {

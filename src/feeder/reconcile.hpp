@@ -63,9 +63,9 @@ struct Evidence {
 /// The fate of every issued record: printed, in doubt and unused are consecutive, ascending, and together all that was
 /// neither confirmed before nor never issued.
 struct Verdict {
-    RecordRange printed;  ///< newly known to be printed
-    RecordRange in_doubt; ///< nobody knows
-    RecordRange unused;   ///< surely not printed
+    RecordRange printed{};  ///< newly known to be printed
+    RecordRange in_doubt{}; ///< nobody knows
+    RecordRange unused{};   ///< surely not printed
     Basis basis = Basis::none;
 
     friend bool operator==(const Verdict&, const Verdict&) = default;

@@ -1,3 +1,4 @@
+// Reading, decoding and answering, see client_session.hpp.
 #include "simulator/client_session.hpp"
 
 #include "simulator/steady_instant.hpp"

@@ -1,3 +1,4 @@
+// The grid of PrintGos, see conveyor.hpp.
 #include "simulator/conveyor.hpp"
 
 #include "base/assert.hpp"

@@ -1,3 +1,4 @@
+// Buckets of lead times, see lead_time_histogram.hpp.
 #include "simulator/lead_time_histogram.hpp"
 
 #include "base/assert.hpp"

@@ -1,3 +1,4 @@
+// The ring of records, see mail_fifo.hpp.
 #include "simulator/mail_fifo.hpp"
 
 #include "base/assert.hpp"

@@ -1,3 +1,4 @@
+// Ranges of printed numbers, see number_sequence.hpp.
 #include "simulator/number_sequence.hpp"
 
 #include <iterator>

@@ -1,3 +1,4 @@
+// Calendar and error list, see printer_clock.hpp.
 #include "simulator/printer_clock.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// How effects read in a trace, see printer_effects.hpp.
 #include "simulator/printer_effects.hpp"
 
 #include <ostream>

@@ -1,3 +1,5 @@
+// The machine of the printer: power, nozzle, cover, errors, jobs, and the order of what happens by itself; see
+// printer_model.hpp.
 #include "simulator/printer_model.hpp"
 
 #include "base/assert.hpp"

@@ -1,3 +1,4 @@
+// Names of habits and versions of profiles, see printer_settings.hpp.
 #include "simulator/printer_settings.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Counting and telling, see run_statistics.hpp.
 #include "simulator/run_statistics.hpp"
 
 #include <nlohmann/json.hpp>

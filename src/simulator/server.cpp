@@ -1,3 +1,4 @@
+// Listening and accepting, see server.hpp.
 #include "simulator/server.hpp"
 
 #include "simulator/client_session.hpp"

@@ -1,3 +1,4 @@
+// What happens when, see simulator.hpp.
 #include "simulator/simulator.hpp"
 
 #include "simulator/steady_instant.hpp"

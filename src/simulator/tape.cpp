@@ -1,3 +1,4 @@
+// Lines, text and the thread that writes them, see tape.hpp.
 #include "simulator/tape.hpp"
 
 #include <array>

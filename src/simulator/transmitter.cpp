@@ -1,3 +1,4 @@
+// Frames on the wire, see transmitter.hpp.
 #include "simulator/transmitter.hpp"
 
 #include "base/assert.hpp"

@@ -30,12 +30,14 @@ class Result:
     def __init__(self, code, out, err):
         self.code, self.out, self.err = code, out, err
 
+    # What stderr may hold besides the one line that says what is wrong: progress, notices, and the sum of bad rows.
+    CONTEXT = re.compile(r"linefeed: (imported \d+ records|importing|printing|acknowledged|stopping the line|nothing is imported: "
+                         r"|the printer (reports|was still printing|does not keep the stop point)|opening the nozzle)")
+
     @property
     def errors(self):
-        """The lines on stderr that are not mere progress or notices of a run."""
-        context = re.compile(r"linefeed: (imported \d+ records|printing\b|importing\b|stopping the line|the printer (is printing|shows)"
-                             r"|the line prints|left out )")
-        return [line for line in self.err.splitlines() if not context.match(line)]
+        """The lines on stderr that are not mere context."""
+        return [line for line in self.err.splitlines() if not self.CONTEXT.match(line)]
 
     def json(self):
         return json.loads(self.out)

@@ -47,7 +47,6 @@ class PrintCsv(harness.TestCase):
         self.assert_printed(records + records, printer)
 
     def test_delimiters_line_ends_and_a_byte_order_mark(self):
-        text = "Anna;B,\nC\tD"
         for delimiter, options in ((",", ()), (";", ()), ("\t", ()), (";", ("--delimiter", ";")), ("\t", ("--delimiter", "tab")),
                                    ("|", ("--delimiter", "|"))):
             for newline in ("\n", "\r\n"):
@@ -60,7 +59,6 @@ class PrintCsv(harness.TestCase):
                         self.assert_done(self.print(file, printer, "--columns", "name,code", *options))
                         self.assert_printed([(1, "ä\t1"), (2, "b\t2")], printer)
                         printer.stop()
-        self.assertIn("\n", text)
 
     def test_quoted_fields_without_header(self):
         file = self.write_bytes('"Müller, Anna",007\n"say ""hi""",0123456789012345678901234567890\n'.encode())

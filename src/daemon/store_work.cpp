@@ -1,0 +1,151 @@
+#include "daemon/store_work.hpp"
+
+
+#include <utility>
+
+namespace linefeed::daemon {
+
+namespace {
+
+template <typename... Visitors>
+struct Overloaded : Visitors... {
+    using Visitors::operator()...;
+};
+
+} // namespace
+
+void deliver(const StoreReply& reply, session::Session& session, Instant now, session::Effects& effects) {
+    std::visit(
+        Overloaded{
+            [](std::monostate) {},
+            [&](const Granted& granted) { session.on_granted(granted.range, granted.durable_through, now, effects); },
+            [&](const Refused& refused) { session.on_refused(refused.why, now, effects); },
+            [&](const Durable& durable) { session.on_durable(durable.through, now, effects); },
+            [&](const Settled&) { session.on_settled(now, effects); },
+            [&](const PageReady& ready) { session.on_page(ready.page, now, effects); },
+            [&](const StorageFailed&) { session.on_storage_failed(now, effects); },
+        },
+        reply);
+}
+
+StoreWork::StoreWork(spool::Spool& spool, spool::JobId job, LedgerKeeper keeper)
+    : spool_(spool)
+    , job_(job)
+    , keeper_(std::move(keeper)) {}
+
+void StoreWork::take(const StoreRequest& request) {
+    LINEFEED_ASSERT(!ended_);
+    const bool writable = failure_.empty(); // otherwise nothing is durable any more: the line is being stopped
+    std::visit(Overloaded{
+                   [](std::monostate) {},
+                   [&](const PageReturned& returned) { take_page_back(returned.page); },
+                   [&](const feeder::End& last) { end(last); },
+                   [&](const feeder::Settle& verdict) {
+                       if (writable) {
+                           settle(verdict);
+                       }
+                   },
+                   [&](const feeder::BeginRun& begin) {
+                       if (writable) {
+                           grant(begin);
+                       }
+                   },
+                   [&](const feeder::AskIntent& intent) { keeper_.intent(intent.through); },
+                   [&](const feeder::ConfirmPrinted& confirm) { keeper_.printed(confirm.through, confirm.evidence); },
+               },
+               request);
+}
+
+void StoreWork::take_page_back(const RecordPage* page) {
+    std::erase_if(lent_, [page](const auto& lent) { return lent.get() == page; });
+}
+
+void StoreWork::settle(const feeder::Settle& verdict) {
+    const auto done = verdict.earlier_run ? keeper_.settle_earlier(verdict) : keeper_.settle(verdict);
+    if (!done) {
+        fail(done.error());
+    } else if (!verdict.earlier_run) {
+        replies_.emplace_back(Settled{});
+    }
+}
+
+void StoreWork::grant(const feeder::BeginRun& begin) {
+    const auto grant = keeper_.grant(begin);
+    if (!grant) {
+        fail(grant.error());
+    } else if (grant->range.empty()) {
+        const bool in_doubt = grant->in_doubt;
+        replies_.emplace_back(
+            Refused{in_doubt ? feeder::OutcomeCode::records_in_doubt : feeder::OutcomeCode::nothing_to_print});
+    } else {
+        to_read_ = grant->range;
+        durable_reported_ = grant->durable_through;
+        replies_.emplace_back(Granted{grant->range, grant->durable_through});
+    }
+}
+
+void StoreWork::end(const feeder::End& end) {
+    ended_ = true;
+    if (failure_.empty()) {
+        if (const auto finished = keeper_.finish(end.outcome); !finished) {
+            fail(finished.error());
+        }
+    }
+}
+
+bool StoreWork::wants_commit() const {
+    return failure_.empty() && !ended_ && keeper_.has_pending();
+}
+
+bool StoreWork::intent_waits() const {
+    return wants_commit() && keeper_.intent_through() > durable_reported_;
+}
+
+void StoreWork::commit() {
+    LINEFEED_ASSERT(failure_.empty());
+    if (const auto committed = keeper_.commit(); !committed) {
+        fail(committed.error());
+        return;
+    }
+    if (keeper_.intent_through() > durable_reported_) {
+        durable_reported_ = keeper_.intent_through();
+        replies_.emplace_back(Durable{durable_reported_});
+    }
+}
+
+bool StoreWork::wants_read_ahead() const {
+    return failure_.empty() && !ended_ && !to_read_.empty() && lent_.size() < session::max_pages;
+}
+
+void StoreWork::read_ahead() {
+    auto page = spool_.read_page(job_, to_read_.first());
+    if (!page) {
+        fail(page.error());
+        return;
+    }
+    const RecordNumber last = page->range().last();
+    to_read_ = last >= to_read_.last() ? RecordRange{} : RecordRange::closed(last.next(), to_read_.last());
+    lent_.push_back(std::make_unique<RecordPage>(std::move(*page)));
+    replies_.emplace_back(PageReady{lent_.back().get()});
+}
+
+void StoreWork::checkpoint() {
+    if (failure_.empty()) {
+        if (const auto done = spool_.checkpoint(); !done) {
+            fail(done.error());
+        }
+    }
+}
+
+std::vector<StoreReply> StoreWork::take_replies() {
+    return std::exchange(replies_, {});
+}
+
+void StoreWork::fail(const Failure& failure) {
+    if (failure_.empty()) {
+        failure_ = failure.message;
+        replies_.emplace_back(StorageFailed{});
+    }
+}
+
+} // namespace linefeed::daemon

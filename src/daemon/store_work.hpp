@@ -1,0 +1,89 @@
+// What the store does for a run, without its thread: requests in, rows and pages through the spool, replies out. The
+// same code runs on the store thread in the service and under virtual time in the simulation.
+#pragma once
+
+#include "base/record_page.hpp"
+#include "daemon/ledger_keeper.hpp"
+#include "feeder/actions.hpp"
+#include "session/session.hpp"
+#include "spool/spool.hpp"
+
+#include <deque>
+#include <memory>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace linefeed::daemon {
+
+/// Feed thread → store: the feeder's ledger actions, and pages that are not needed any more.
+struct PageReturned {
+    const RecordPage* page = nullptr;
+};
+using StoreRequest = std::variant<std::monostate, feeder::Settle, feeder::BeginRun, feeder::AskIntent,
+                                  feeder::ConfirmPrinted, feeder::End, PageReturned>;
+
+/// Store → feed thread.
+struct Granted {
+    RecordRange range;
+    RecordNumber durable_through;
+};
+struct Refused {
+    feeder::OutcomeCode why = feeder::OutcomeCode::nothing_to_print;
+};
+struct Durable {
+    RecordNumber through;
+};
+struct Settled {};
+struct PageReady {
+    const RecordPage* page = nullptr;
+};
+struct StorageFailed {};
+using StoreReply = std::variant<std::monostate, Granted, Refused, Durable, Settled, PageReady, StorageFailed>;
+
+/// Hands a reply to the session.
+void deliver(const StoreReply& reply, session::Session& session, Instant now, session::Effects& effects);
+
+/// Flow: take() each request in order; commit() when wants_commit(), at once if intent_waits(), within 50 ms otherwise;
+/// read_ahead() when nothing else is to do; take_replies() after each. The End request is the last.
+class StoreWork {
+public:
+    StoreWork(spool::Spool& spool, spool::JobId job, LedgerKeeper keeper);
+
+    void take(const StoreRequest& request);
+    /// Rows wait to be written.
+    [[nodiscard]] bool wants_commit() const;
+    /// The feeder may be waiting for one of them.
+    [[nodiscard]] bool intent_waits() const;
+    /// Writes them in one transaction.
+    void commit();
+    [[nodiscard]] bool wants_read_ahead() const;
+    /// Reads one page.
+    void read_ahead();
+    /// Copies the write-ahead log into the database.
+    void checkpoint();
+
+    [[nodiscard]] std::vector<StoreReply> take_replies();
+    [[nodiscard]] bool ended() const { return ended_; }
+    /// What went wrong with the storage; empty = nothing. Nothing is written after that.
+    [[nodiscard]] const std::string& failure() const { return failure_; }
+
+private:
+    void take_page_back(const RecordPage* page);
+    void settle(const feeder::Settle& settle);
+    void grant(const feeder::BeginRun& begin);
+    void end(const feeder::End& end);
+    void fail(const Failure& failure);
+
+    spool::Spool& spool_;
+    spool::JobId job_;
+    LedgerKeeper keeper_;
+    RecordRange to_read_;                          ///< records whose pages have not been read yet
+    std::deque<std::unique_ptr<RecordPage>> lent_; ///< at most session::max_pages
+    RecordNumber durable_reported_;
+    std::vector<StoreReply> replies_;
+    bool ended_ = false;
+    std::string failure_;
+};
+
+} // namespace linefeed::daemon

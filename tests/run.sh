@@ -1,0 +1,97 @@
+#!/usr/bin/env bash
+# Tests everything: installs what is missing, builds the release preset, runs all tests, checks the form of the code and the coverage of
+# protocol and feeder. From a clean clone, as root or with sudo, without questions.
+#
+# usage: tests/run.sh [--long]
+#   --long   the rates for 60 s each instead of 5 s, and each fuzz target for 10 minutes (LINEFEED_FUZZ_SECONDS)
+set -uo pipefail
+cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.." || exit 1
+
+long=0
+case "${1:-}" in
+    "") ;;
+    --long) long=1 ;;
+    *) echo "usage: tests/run.sh [--long]" >&2; exit 2 ;;
+esac
+
+passed=0
+failed=0
+cores=$(nproc)
+
+stage() { # NAME COMMAND…: counts as one test
+    local name=$1 started=$SECONDS
+    shift
+    printf '\n=== %s\n' "$name"
+    if "$@"; then
+        passed=$((passed + 1))
+        echo "=== $name: ok ($((SECONDS - started)) s)"
+    else
+        failed=$((failed + 1))
+        echo "=== $name: FAILED ($((SECONDS - started)) s)"
+        return 1
+    fi
+}
+
+finish() {
+    printf '\n%s s in all\n%s passed, %s failed\n' "$SECONDS" "$passed" "$failed"
+    [[ $failed -eq 0 && $passed -gt 0 ]]
+    exit
+}
+
+run_tests() { # NAME CTEST-ARGUMENTS…: every test of ctest counts
+    local name=$1 log started=$SECONDS total bad
+    shift
+    printf '\n=== %s\n' "$name"
+    log=$(mktemp)
+    ctest --test-dir build/release --output-on-failure --no-tests=error "$@" 2>&1 | tee "$log" | grep -v '^ *Start \|\*\*\* *Skipped\|  Passed '
+    local code=${PIPESTATUS[0]}
+    read -r bad total < <(sed -n 's/^.*tests passed, \([0-9]*\) tests failed out of \([0-9]*\)$/\1 \2/p' "$log")
+    rm -f "$log"
+    if [[ -z ${total:-} ]]; then
+        bad=1 total=1
+    elif [[ $code -ne 0 && $bad -eq 0 ]]; then
+        bad=1
+    fi
+    passed=$((passed + total - bad))
+    failed=$((failed + bad))
+    echo "=== $name: $((total - bad)) of $total ($((SECONDS - started)) s)"
+}
+
+build_release() {
+    cmake --preset release -D LINEFEED_TESTS=ON > build/release-configure.log 2>&1 || { cat build/release-configure.log; return 1; }
+    cmake --build --preset release --parallel "$cores"
+}
+
+fuzz() {
+    cmake --preset fuzz > build/fuzz-configure.log 2>&1 || { cat build/fuzz-configure.log; return 1; }
+    cmake --build --preset fuzz --parallel "$cores" || return 1
+    local target name seconds=${LINEFEED_FUZZ_SECONDS:-600} log
+    for target in build/fuzz/bin/*_fuzz; do
+        name=$(basename "$target" _fuzz)
+        log=build/fuzz/$name.log
+        mkdir -p "build/fuzz/found/$name"
+        echo "fuzzing $name for $seconds s"
+        if ! "$target" -max_total_time="$seconds" -jobs="$cores" -workers="$cores" -print_final_stats=1 -artifact_prefix="build/fuzz/found/" \
+            "build/fuzz/found/$name" "tests/fuzz/corpus/$name" > "$log" 2>&1; then
+            tail -n 60 "$log"
+            return 1
+        fi
+        cat fuzz-*.log 2> /dev/null | grep 'number_of_executed_units' || true
+        rm -f fuzz-*.log
+    done
+}
+
+mkdir -p build
+groups=(build test lint)
+[[ $long -eq 0 ]] || groups+=(fuzz)
+stage "packages" deploy/dependencies.sh "${groups[@]}" || finish
+stage "build" build_release || finish
+[[ $long -eq 0 ]] || export LINEFEED_LONG_TESTS=1
+run_tests "unit and architecture" -L unit --parallel "$cores"
+run_tests "fuzz corpora" -L fuzz --parallel "$cores"
+run_tests "integration" -L integration
+stage "format" tests/lint.sh format
+stage "tidy" tests/lint.sh tidy
+stage "coverage" tests/coverage.sh
+[[ $long -eq 0 ]] || stage "fuzz" fuzz
+finish

@@ -1,0 +1,121 @@
+// The measured rate, the beat of `?SM`, and the size of a block.
+#include "feeder/pacing.hpp"
+
+#include <gtest/gtest.h>
+
+namespace linefeed::feeder {
+namespace {
+
+using std::chrono::microseconds;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+constexpr Instant start{seconds{100}};
+
+/// Reports every `interval` for `time`, at `rate` prints per second.
+Instant run(Pacing& pacing, double rate, Duration time, Duration interval, Instant from = start, double before = 0) {
+    Instant now = from;
+    while (now < from + time) {
+        now += interval;
+        const double printed = before + rate * std::chrono::duration<double>(now - from).count();
+        pacing.printed(RecordCount{static_cast<std::uint64_t>(printed)}, now);
+    }
+    return now;
+}
+
+TEST(Pacing, shouldKnowNoRateBeforeItHasMeasured) {
+    Pacing pacing{PacingSettings{}};
+    EXPECT_EQ(pacing.rate(), 0.0);
+    pacing.restart(start);
+    EXPECT_EQ(pacing.rate(), 0.0);
+    pacing.printed(RecordCount{10}, start);
+    EXPECT_EQ(pacing.rate(), 0.0) << "no time has passed";
+}
+
+TEST(Pacing, shouldMeasureTheRateAtAnyPollingInterval) {
+    for (const double rate : {1.0, 50.0, 500.0, 5000.0}) {
+        for (const Duration interval : {Duration{milliseconds{1}}, Duration{milliseconds{20}}, Duration{milliseconds{250}}}) {
+            Pacing pacing{PacingSettings{}};
+            pacing.restart(start);
+            run(pacing, rate, seconds{5}, interval);
+            EXPECT_NEAR(pacing.rate(), rate, rate * 0.05 + 1.1) << interval.count();
+        }
+    }
+}
+
+TEST(Pacing, shouldFollowAChangeWithinTheWindow) {
+    Pacing pacing{PacingSettings{}};
+    pacing.restart(start);
+    const Instant changed = run(pacing, 1000, seconds{3}, milliseconds{10});
+    const Instant later = run(pacing, 100, milliseconds{1300}, milliseconds{10}, changed, 3000);
+    EXPECT_NEAR(pacing.rate(), 100.0, 10.0);
+    run(pacing, 0, milliseconds{1300}, milliseconds{10}, later, 3130);
+    EXPECT_EQ(pacing.rate(), 0.0) << "the line stands";
+}
+
+TEST(Pacing, shouldForgetTheRateOnRestart) {
+    Pacing pacing{PacingSettings{}};
+    pacing.restart(start);
+    run(pacing, 1000, seconds{3}, milliseconds{10});
+    pacing.restart(start + seconds{10});
+    EXPECT_EQ(pacing.rate(), 0.0);
+    pacing.printed(RecordCount{5}, start + seconds{11});
+    EXPECT_NEAR(pacing.rate(), 5.0, 0.001);
+}
+
+TEST(Pacing, shouldPollSeveralTimesInTheTimeToEmpty) {
+    const Pacing pacing{PacingSettings{.burst_rate = 1000.0, .polls_per_buffer = 8.0}};
+    // 200 records at 1000 a second last 200 ms.
+    EXPECT_EQ(pacing.poll_interval(RecordCount{200}), milliseconds{25});
+    EXPECT_EQ(pacing.poll_interval(RecordCount{16}), milliseconds{2});
+}
+
+TEST(Pacing, shouldKeepTheIntervalBetweenItsBounds) {
+    const Pacing pacing{PacingSettings{}};
+    for (const std::uint64_t level : {std::uint64_t{0}, std::uint64_t{1}, std::uint64_t{7}, std::uint64_t{256},
+                                      std::uint64_t{4000}, std::uint64_t{4294967295}}) {
+        EXPECT_GE(pacing.poll_interval(RecordCount{level}), milliseconds{1}) << level;
+        EXPECT_LE(pacing.poll_interval(RecordCount{level}), milliseconds{250}) << level;
+    }
+    EXPECT_EQ(pacing.poll_interval(RecordCount{0}), milliseconds{1});
+    EXPECT_EQ(pacing.poll_interval(RecordCount{4294967295}), milliseconds{250});
+}
+
+TEST(Pacing, shouldBoundTheIntervalOfALineThatHardlyMoves) {
+    const Pacing pacing{PacingSettings{.burst_rate = 1e-12}};
+    EXPECT_EQ(pacing.poll_interval(RecordCount{256}), milliseconds{250});
+}
+
+TEST(Pacing, shouldPollAFastLineMoreOftenThanItsBurstRate) {
+    Pacing pacing{PacingSettings{}};
+    pacing.restart(start);
+    run(pacing, 4000, seconds{2}, milliseconds{5});
+    const Duration interval = pacing.poll_interval(RecordCount{256});
+    EXPECT_NEAR(static_cast<double>(std::chrono::duration_cast<microseconds>(interval).count()), 8000.0, 200.0);
+}
+
+TEST(Pacing, shouldCollectBlocksOnlyWhenTheBufferIsComfortable) {
+    const auto worth = [](std::uint64_t credit, std::uint64_t level, std::uint64_t depth) {
+        return Pacing::worth_sending(RecordCount{credit}, RecordCount{level}, RecordCount{depth});
+    };
+    EXPECT_FALSE(worth(0, 0, 256)) << "nothing to send";
+    EXPECT_FALSE(worth(1, 255, 256));
+    EXPECT_FALSE(worth(15, 241, 256));
+    EXPECT_TRUE(worth(16, 240, 256)) << "a sixteenth of the depth";
+    EXPECT_FALSE(worth(1, 128, 256)) << "half full is comfortable";
+    EXPECT_TRUE(worth(1, 127, 256)) << "at once below";
+    EXPECT_TRUE(worth(1, 0, 1));
+    EXPECT_TRUE(worth(1, 2, 3)) << "a small FIFO has blocks of one";
+}
+
+using PacingDeathTest = testing::Test;
+
+TEST(PacingDeathTest, shouldRefuseSettingsWithoutABeat) {
+    EXPECT_DEATH(Pacing(PacingSettings{.poll_min = Duration{0}}), "poll_min");
+    EXPECT_DEATH(Pacing(PacingSettings{.poll_min = seconds{1}}), "poll_max");
+    EXPECT_DEATH(Pacing(PacingSettings{.burst_rate = 0}), "burst_rate");
+    EXPECT_DEATH(Pacing(PacingSettings{.polls_per_buffer = 0}), "polls_per_buffer");
+}
+
+} // namespace
+} // namespace linefeed::feeder
