@@ -249,11 +249,11 @@ Result<ExitCode> jobs(const JobsOptions& options) {
         const std::uint64_t printed = state->count(RecordState::printed).value();
         if (options.json) {
             all.push_back(Json{{"job", static_cast<std::int64_t>(job.id)},
-                           {"file", job.spec.source.path},
-                           {"first", job.records.first().value()},
-                           {"last", job.records.last().value()},
-                           {"created", format_wall_time(job.created_ns)},
-                           {"counts", counts_json(*state)}});
+                               {"file", job.spec.source.path},
+                               {"first", job.records.first().value()},
+                               {"last", job.records.last().value()},
+                               {"created", format_wall_time(job.created_ns)},
+                               {"counts", counts_json(*state)}});
             continue;
         }
         std::cout << "job " << static_cast<std::int64_t>(job.id) << "  " << format_wall_time(job.created_ns)

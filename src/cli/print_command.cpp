@@ -48,6 +48,12 @@ private:
     Result<ExitCode> dry_run(spool::Spool& spool, const spool::Job& job, RecordRange wanted) const;
     Result<ExitCode> print(spool::Spool& spool, const spool::Job& job, RecordRange wanted,
                            const daemon::JobRunSettings& settings);
+    Result<std::optional<feeder::Outcome>> settle_other_jobs(spool::Spool& spool, const spool::Job& job,
+                                                             const daemon::JobRunSettings& settings);
+    Result<feeder::Outcome> print_runs(spool::Spool& spool, const spool::Job& job, RecordRange wanted,
+                                       const daemon::JobRunSettings& settings);
+    Result<bool> settle_doubt(spool::Spool& spool, const spool::Job& job);
+    Result<bool> ask_operator(spool::Spool& spool, const spool::Job& job);
     void watch(daemon::JobRun& run, RecordRange wanted);
     [[nodiscard]] daemon::JobRunSettings run_settings() const;
 
@@ -55,6 +61,8 @@ private:
     SignalWatch signals_;
     ProgressView view_;
     bool interrupted_ = false;
+    bool word_counts_ = true;
+    std::string detail_; ///< of the last run
 };
 
 daemon::JobRunSettings PrintCommand::run_settings() const {
@@ -194,11 +202,82 @@ Result<ExitCode> PrintCommand::dry_run(spool::Spool& spool, const spool::Job& jo
     return ExitCode::done;
 }
 
-Result<ExitCode> PrintCommand::print(spool::Spool& spool, const spool::Job& job, RecordRange wanted,
-                                     const daemon::JobRunSettings& settings) {
+/// Other jobs may have records in this printer whose fate only it knows, until it is flushed: they are settled first.
+/// The outcome is that of a printer which could not be asked; absent = nothing stands in the way.
+Result<std::optional<feeder::Outcome>> PrintCommand::settle_other_jobs(spool::Spool& spool, const spool::Job& job,
+                                                                       const daemon::JobRunSettings& settings) {
+    const auto open_jobs = spool.jobs_with_open_records();
+    if (!open_jobs) {
+        return open_jobs.error();
+    }
+    for (const spool::JobId other : *open_jobs) {
+        const auto open = daemon::find_open_issue(spool, other);
+        const auto other_job = spool.job(other);
+        if (!open || !other_job) {
+            return open ? other_job.error() : open.error();
+        }
+        if (other == job.id || !*open || !*other_job || (*open)->printer != link::to_string(settings.printer)) {
+            continue;
+        }
+        view_.message("job " + std::to_string(static_cast<std::int64_t>(other)) +
+                      " may have records in this printer: asking how far it came");
+        daemon::JobRun run{spool, **other_job, {}, *open, settings};
+        run.start();
+        watch(run, {});
+        run.join();
+        const auto left = daemon::find_open_issue(spool, other);
+        if (!left) {
+            return left.error();
+        }
+        if (*left) {
+            detail_ = run.detail();
+            return std::optional{run.outcome()};
+        }
+    }
+    return std::optional<feeder::Outcome>{};
+}
+
+/// Whether records wait for an operator, and he can be asked. True if his word is in the ledger now.
+Result<bool> PrintCommand::ask_operator(spool::Spool& spool, const spool::Job& job) {
+    if (options_.json || ::isatty(STDIN_FILENO) == 0 || ::isatty(STDERR_FILENO) == 0) {
+        return false;
+    }
+    const auto report = make_report(spool, job, job.records, {feeder::OutcomeCode::records_in_doubt, {}, {}, false}, {},
+                                    options_.profile.escapes);
+    if (!report) {
+        return report.error();
+    }
+    show_doubtful(*report);
+    OperatorWord word;
+    std::cerr << "Which record is on the last product? Its number or text (nothing = decide later): " << std::flush;
+    if (!std::getline(std::cin, word.last_printed) || word.last_printed.empty()) {
+        return false;
+    }
+    if (const auto settled = settle_by_operator(spool, job, word, options_.profile.escapes); !settled) {
+        return settled.error();
+    }
+    return true;
+}
+
+Result<bool> PrintCommand::settle_doubt(spool::Spool& spool, const spool::Job& job) {
+    if (!options_.operator_word.given()) {
+        return ask_operator(spool, job);
+    }
+    if (!word_counts_) {
+        return false;
+    }
+    word_counts_ = false;
+    if (const auto settled = settle_by_operator(spool, job, options_.operator_word, options_.profile.escapes);
+        !settled) {
+        return settled.error();
+    }
+    return true;
+}
+
+/// One run after the other until nothing is left to print, or something stands in the way.
+Result<feeder::Outcome> PrintCommand::print_runs(spool::Spool& spool, const spool::Job& job, RecordRange wanted,
+                                                 const daemon::JobRunSettings& settings) {
     feeder::Outcome outcome{feeder::OutcomeCode::nothing_to_print, {}, {}, false};
-    std::string detail;
-    bool word_counts = options_.operator_word.given(); // what the operator saw is true until something more is printed
     while (!interrupted_) {
         auto open = daemon::find_open_issue(spool, job.id);
         const auto state = spool.ledger_state(job.id);
@@ -207,35 +286,48 @@ Result<ExitCode> PrintCommand::print(spool::Spool& spool, const spool::Job& job,
         }
         if (!*open && state->count(spool::RecordState::in_doubt) > RecordCount{0}) {
             outcome.code = feeder::OutcomeCode::records_in_doubt;
-            if (!word_counts) {
-                break;
-            }
-            word_counts = false;
-            if (const auto settled = settle_by_operator(spool, job, options_.operator_word, options_.profile.escapes);
-                !settled) {
+            const auto settled = settle_doubt(spool, job);
+            if (!settled) {
                 return settled.error();
             }
+            if (!*settled) {
+                return outcome;
+            }
+            outcome.code = feeder::OutcomeCode::nothing_to_print;
             continue;
         }
         if (!*open && state->next_printable(wanted).empty()) {
-            break;
+            return outcome;
         }
         daemon::JobRun run{spool, job, wanted, *open, settings};
         run.start();
         watch(run, wanted);
         run.join();
         outcome = run.outcome();
-        detail = run.detail();
-        word_counts = word_counts && !outcome.issued;
-        const bool doubt_to_settle = word_counts && outcome.code == feeder::OutcomeCode::records_in_doubt;
+        detail_ = run.detail();
+        word_counts_ = word_counts_ && !outcome.issued; // what the operator saw is true until something more is printed
+        const bool doubt_to_settle = outcome.code == feeder::OutcomeCode::records_in_doubt && !outcome.issued;
         if (outcome.code != feeder::OutcomeCode::finished && !doubt_to_settle) {
-            break;
+            return outcome;
         }
     }
-    if (outcome.code == feeder::OutcomeCode::nothing_to_print) {
-        detail = "all records of " + options_.file.string() + " in this range are printed already";
+    return outcome;
+}
+
+Result<ExitCode> PrintCommand::print(spool::Spool& spool, const spool::Job& job, RecordRange wanted,
+                                     const daemon::JobRunSettings& settings) {
+    const auto hindrance = settle_other_jobs(spool, job, settings);
+    if (!hindrance) {
+        return hindrance.error();
     }
-    const auto report = make_report(spool, job, wanted, outcome, detail, options_.profile.escapes);
+    const auto outcome = *hindrance ? Result<feeder::Outcome>{**hindrance} : print_runs(spool, job, wanted, settings);
+    if (!outcome) {
+        return outcome.error();
+    }
+    if (outcome->code == feeder::OutcomeCode::nothing_to_print) {
+        detail_ = "all records of " + options_.file.string() + " in this range are printed already";
+    }
+    const auto report = make_report(spool, job, wanted, *outcome, detail_, options_.profile.escapes);
     if (!report) {
         return report.error();
     }

@@ -128,6 +128,16 @@ void show_json(const PrintReport& report) {
 
 } // namespace
 
+void show_doubtful(const PrintReport& report) {
+    for (const DoubtfulRecord& record : report.doubtful) {
+        std::cout << "in doubt: " << record.number << "  " << joined(record.fields) << '\n';
+    }
+    if (report.in_doubt.value() > report.doubtful.size()) {
+        std::cout << "in doubt: " << report.in_doubt.value() - report.doubtful.size() << " more\n";
+    }
+    std::cout.flush();
+}
+
 void show_report(const PrintReport& report, bool json) {
     if (report.code != ExitCode::done) {
         std::fprintf(stderr, "linefeed: %s\n", printable(report.message).c_str());
@@ -142,12 +152,7 @@ void show_report(const PrintReport& report, bool json) {
         std::cout << ", last printed " << *report.last_printed;
     }
     std::cout << '\n';
-    for (const DoubtfulRecord& record : report.doubtful) {
-        std::cout << "in doubt: " << record.number << "  " << joined(record.fields) << '\n';
-    }
-    if (report.in_doubt.value() > report.doubtful.size()) {
-        std::cout << "in doubt: " << report.in_doubt.value() - report.doubtful.size() << " more\n";
-    }
+    show_doubtful(report);
     if (report.in_doubt > RecordCount{0}) {
         std::cout << "to go on: look at the last product, and start again with --last-printed NUMBER (or its text); "
                      "or with --in-doubt skip or reprint\n";

@@ -44,6 +44,8 @@ inline constexpr std::size_t max_doubtful_shown = 300;
                                               const feeder::Outcome& outcome, const std::string& detail,
                                               protocol::EscapeMode escapes);
 
+/// The records in doubt with their texts, for a person.
+void show_doubtful(const PrintReport& report);
 /// For stdout.
 void show_report(const PrintReport& report, bool json);
 /// The rows that cannot be printed: for stderr, or as JSON on stdout.

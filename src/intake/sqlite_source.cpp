@@ -14,10 +14,13 @@ constexpr int busy_timeout_ms = 2000;
 /// Above this, a REAL may stand for several integers of the same text.
 constexpr double exact_real_max = 1e15;
 
-/// For the user's query: reading is allowed, nothing else.
-int allow_reading(void*, int action, const char*, const char*, const char*, const char*) {
+/// For the user's query: reading is allowed, nothing else. Sets the bool behind `denied` when it has refused something.
+int allow_reading(void* denied, int action, const char*, const char*, const char*, const char*) {
     const bool reads =
         action == SQLITE_SELECT || action == SQLITE_READ || action == SQLITE_FUNCTION || action == SQLITE_RECURSIVE;
+    if (!reads) {
+        *static_cast<bool*>(denied) = true;
+    }
     return reads ? SQLITE_OK : SQLITE_DENY;
 }
 
@@ -104,12 +107,12 @@ Result<void> SqliteSource::start_table(const SourceOptions& options) {
 
 Result<void> SqliteSource::start_query(const std::string& query, const std::vector<std::string>& columns) {
     sqlite3* const connection = connection_.get();
-    sqlite3_set_authorizer(connection, allow_reading, nullptr);
+    sqlite3_set_authorizer(connection, allow_reading, &query_denied_);
     sqlite3_stmt* statement = nullptr;
     const char* rest = nullptr;
     const int code = sqlite3_prepare_v2(connection, query.c_str(), -1, &statement, &rest);
     statement_.reset(statement);
-    if (code == SQLITE_AUTH) {
+    if (query_denied_) {
         return bad_query(file_, "it must be a single SELECT");
     }
     if ((code & 0xFF) == SQLITE_ERROR) {

@@ -27,6 +27,7 @@ private:
     [[nodiscard]] Result<std::string_view> value(std::size_t index, Row& row);
 
     std::string file_;
+    bool query_denied_ = false; ///< the query wanted to do something else than read
     SqliteConnection connection_;
     SqliteStatement statement_;
     std::vector<std::size_t> chosen_; ///< columns of the result, each converted once …

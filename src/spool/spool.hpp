@@ -98,6 +98,8 @@ public:
     [[nodiscard]] Result<void> append(JobId job, std::span<const LedgerEntry> entries);
     /// The state of the job's records; costs the same however long the ledger is.
     [[nodiscard]] Result<LedgerState> ledger_state(JobId job);
+    /// The jobs with issued records whose fate is not known, oldest first.
+    [[nodiscard]] Result<std::vector<JobId>> jobs_with_open_records();
     /// Rows of a job in order, from `after` (exclusive; 0 = from the start), at most `limit`.
     [[nodiscard]] Result<std::vector<LedgerRow>> ledger_rows(JobId job, std::int64_t after, std::size_t limit);
     /// The run_started row of the newest run of the job, and whether a run_ended row follows it.

@@ -278,6 +278,25 @@ Result<void> Spool::append(JobId job, std::span<const LedgerEntry> entries) {
     return state_->append_rows(job, entries);
 }
 
+Result<std::vector<JobId>> Spool::jobs_with_open_records() {
+    auto statement =
+        state_->database->prepare("SELECT DISTINCT job FROM ledger_segments WHERE state = 'open' ORDER BY job");
+    if (!statement) {
+        return statement.error();
+    }
+    std::vector<JobId> jobs;
+    while (true) {
+        const auto row = statement->step();
+        if (!row) {
+            return row.error();
+        }
+        if (!*row) {
+            return jobs;
+        }
+        jobs.push_back(JobId{statement->number(0)});
+    }
+}
+
 Result<LedgerState> Spool::ledger_state(JobId job) {
     const auto ledger = state_->job_ledger(job);
     if (!ledger) {

@@ -150,7 +150,10 @@ TEST(Refill, shouldAskForIntentsWellBeforeTheyAreUsedUp) {
     static_cast<void>(refill.take()); // 101-200
     ASSERT_TRUE(refill.printed(no(200)));
     static_cast<void>(refill.take()); // 201-300
-    EXPECT_EQ(refill.next_intent(), no(700)) << "four depths ahead of 300";
+    EXPECT_EQ(refill.next_intent(), std::nullopt) << "still more than two depths ahead";
+    ASSERT_TRUE(refill.printed(no(300)));
+    static_cast<void>(refill.take()); // 301-400
+    EXPECT_EQ(refill.next_intent(), no(800)) << "four depths ahead of 400";
     EXPECT_EQ(refill.next_intent(), std::nullopt) << "asked already";
 }
 
