@@ -133,7 +133,7 @@ Result<spool::Job> PrintCommand::find_job(spool::Spool& spool) {
     if (!selection->job) {
         return Failure{FailureKind::input, {}}; // said already
     }
-    if (selection->imported && !options_.json) {
+    if (selection->imported && !options_.json && !options_.dry_run) {
         view_.message("imported " + std::to_string(selection->job->records.count().value()) + " records from " +
                       printable(options_.file.string()) + " as job " +
                       std::to_string(static_cast<std::int64_t>(selection->job->id)));

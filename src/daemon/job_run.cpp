@@ -10,24 +10,11 @@ namespace asio = boost::asio;
 using session::Effects;
 using session::Session;
 
-namespace {
-
-feeder::FeederPlan plan_for(const std::optional<OpenIssue>& open, spool::JobId job) {
-    feeder::FeederPlan plan;
-    if (open) {
-        plan.open = open->facts;
-        plan.doubt_blocks = open->job == job;
-    }
-    return plan;
-}
-
-} // namespace
-
 JobRun::JobRun(spool::Spool& spool, const spool::Job& job, RecordRange wanted, std::optional<OpenIssue> open,
                const JobRunSettings& settings)
     : settings_(settings)
     , store_(StoreWork{spool, job.id, LedgerKeeper{spool, job.id, wanted, link::to_string(settings.printer), open}})
-    , session_(settings.session, plan_for(open, job.id))
+    , session_(settings.session, make_plan(open, job.id, wanted))
     , link_(context_, session_, *this)
     , replies_(context_, ::dup(store_.replies_signal().descriptor())) {}
 
@@ -75,6 +62,8 @@ void JobRun::on_effect(const session::Effect& effect) {
         push(*settle);
     } else if (const auto* begin = std::get_if<feeder::BeginRun>(&effect)) {
         push(*begin);
+    } else if (const auto* adopt = std::get_if<feeder::AdoptRun>(&effect)) {
+        push(*adopt);
     } else if (const auto* release = std::get_if<session::ReleasePage>(&effect)) {
         push(PageReturned{release->page});
     } else if (const auto* notice = std::get_if<feeder::Notice>(&effect)) {
@@ -104,7 +93,7 @@ void JobRun::push_cumulative() {
 }
 
 void JobRun::on_unreachable(const std::string& reason) {
-    detail_ = reason;
+    detail_ = link::to_string(settings_.printer) + ": " + reason;
     end({{feeder::OutcomeCode::unreachable, {}, {}, false}});
 }
 

@@ -52,11 +52,22 @@ Result<std::optional<OpenIssue>> find_open_issue(spool::Spool& spool, spool::Job
     issue.job = job;
     issue.run = started.entry.run;
     issue.records = open.front();
+    issue.run_range = started.entry.range;
     issue.printer = start->printer;
     issue.facts = {started.entry.range.first(), issue.records.first().previous(),
                    issue.records.last(),        start->serial_number,
                    start->total_before,         start->last_printed_before};
     return std::optional<OpenIssue>{issue};
+}
+
+feeder::FeederPlan make_plan(const std::optional<OpenIssue>& open, spool::JobId job, RecordRange wanted) {
+    feeder::FeederPlan plan;
+    if (open) {
+        plan.open = open->facts;
+        plan.doubt_blocks = open->job == job;
+        plan.take_over = open->job == job && !wanted.empty() && open->run_range.last() == wanted.last();
+    }
+    return plan;
 }
 
 LedgerKeeper::LedgerKeeper(spool::Spool& spool, spool::JobId job, RecordRange wanted, std::string printer,
@@ -124,6 +135,18 @@ Result<LedgerKeeper::Grant> LedgerKeeper::grant(const feeder::BeginRun& begin) {
     }
     grant.durable_through = intent_through_;
     return grant;
+}
+
+Result<LedgerKeeper::Grant> LedgerKeeper::adopt(const feeder::AdoptRun& adopted) {
+    LINEFEED_ASSERT(make_plan(open_, job_, wanted_).take_over);
+    run_ = open_->run;
+    intent_through_ = open_->facts.issued_through;
+    printed_through_ = open_->facts.printed_through;
+    printed(adopted.printed_through, adopted.evidence);
+    if (const auto committed = commit(); !committed) {
+        return committed.error();
+    }
+    return Grant{open_->run_range, intent_through_, false};
 }
 
 void LedgerKeeper::intent(RecordNumber through) {

@@ -5,6 +5,7 @@
 
 #include "base/failure.hpp"
 #include "feeder/actions.hpp"
+#include "feeder/feeder.hpp"
 #include "spool/spool.hpp"
 
 #include <optional>
@@ -17,12 +18,17 @@ struct OpenIssue {
     spool::JobId job{};
     spool::RunId run{};
     RecordRange records;
+    RecordRange run_range; ///< what the run meant to print
     feeder::OpenRun facts;
     std::string printer; ///< address of the printer that may hold them
 };
 
 /// What the job's last run left open; absent if every issued record's fate is known.
 [[nodiscard]] Result<std::optional<OpenIssue>> find_open_issue(spool::Spool& spool, spool::JobId job);
+
+/// What the feeder has to know of the open records before it prints `wanted` of `job`. The earlier run may be gone on
+/// with if it is of this job and ends where the operator wants it to end.
+[[nodiscard]] feeder::FeederPlan make_plan(const std::optional<OpenIssue>& open, spool::JobId job, RecordRange wanted);
 
 /// One job's ledger during one run. Flow: construct, settle_earlier() and grant() as the feeder asks, then intent(),
 /// printed(), and at the end settle() and finish().
@@ -42,6 +48,10 @@ public:
     };
     /// Begins the run over the next printable records, with the first intents, durable at return.
     [[nodiscard]] Result<Grant> grant(const feeder::BeginRun& begin);
+
+    /// Goes on with the earlier run, found still printing: its records stay issued, those behind `sent_through` may be
+    /// sent. Precondition: FeederPlan::take_over of make_plan().
+    [[nodiscard]] Result<Grant> adopt(const feeder::AdoptRun& adopted);
 
     /// Adds rows without writing them; commit() does. Both grow with `through`; what is known already is left out.
     void intent(RecordNumber through);

@@ -1,6 +1,5 @@
 #include "daemon/store_work.hpp"
 
-
 #include <utility>
 
 namespace linefeed::daemon {
@@ -50,6 +49,11 @@ void StoreWork::take(const StoreRequest& request) {
                            grant(begin);
                        }
                    },
+                   [&](const feeder::AdoptRun& adopted) {
+                       if (writable) {
+                           adopt(adopted);
+                       }
+                   },
                    [&](const feeder::AskIntent& intent) { keeper_.intent(intent.through); },
                    [&](const feeder::ConfirmPrinted& confirm) { keeper_.printed(confirm.through, confirm.evidence); },
                },
@@ -82,6 +86,19 @@ void StoreWork::grant(const feeder::BeginRun& begin) {
         durable_reported_ = grant->durable_through;
         replies_.emplace_back(Granted{grant->range, grant->durable_through});
     }
+}
+
+void StoreWork::adopt(const feeder::AdoptRun& adopted) {
+    const auto grant = keeper_.adopt(adopted);
+    if (!grant) {
+        fail(grant.error());
+        return;
+    }
+    to_read_ = adopted.sent_through == grant->range.last()
+                   ? RecordRange{}
+                   : RecordRange::closed(adopted.sent_through.next(), grant->range.last());
+    durable_reported_ = grant->durable_through;
+    replies_.emplace_back(Granted{grant->range, grant->durable_through});
 }
 
 void StoreWork::end(const feeder::End& end) {

@@ -20,7 +20,7 @@ namespace linefeed::daemon {
 struct PageReturned {
     const RecordPage* page = nullptr;
 };
-using StoreRequest = std::variant<std::monostate, feeder::Settle, feeder::BeginRun, feeder::AskIntent,
+using StoreRequest = std::variant<std::monostate, feeder::Settle, feeder::BeginRun, feeder::AdoptRun, feeder::AskIntent,
                                   feeder::ConfirmPrinted, feeder::End, PageReturned>;
 
 /// Store → feed thread.
@@ -72,6 +72,7 @@ private:
     void take_page_back(const RecordPage* page);
     void settle(const feeder::Settle& settle);
     void grant(const feeder::BeginRun& begin);
+    void adopt(const feeder::AdoptRun& adopted);
     void end(const feeder::End& end);
     void fail(const Failure& failure);
 

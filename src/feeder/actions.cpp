@@ -19,6 +19,9 @@ struct Printer {
     void operator()(const BeginRun& begin) const {
         out << "begin run, last printed before " << begin.last_printed_before;
     }
+    void operator()(const AdoptRun& adopt) const {
+        out << "adopt run, printed through " << adopt.printed_through << ", sent through " << adopt.sent_through;
+    }
     void operator()(const AskIntent& intent) const { out << "intent through " << intent.through; }
     void operator()(const ConfirmPrinted& confirm) const { out << "printed through " << confirm.through; }
     void operator()(const Notice& notice) const { out << "notice: " << describe(notice); }
@@ -43,6 +46,8 @@ std::string describe(const Notice& notice) {
         return "acknowledged " + protocol::describe(notice.error);
     case NoticeCode::printer_warning:
         return "the printer reports " + protocol::describe(notice.error);
+    case NoticeCode::taken_over:
+        return "the printer is still printing: taken over without a stop";
     case NoticeCode::found_printing:
         return "the printer was still printing records of the earlier run: it is stopped to learn where it is";
     case NoticeCode::nozzle_opening:

@@ -51,6 +51,13 @@ struct BeginRun {
     RecordNumber last_printed_before; ///< OpenRun::last_printed_before
     friend bool operator==(const BeginRun&, const BeginRun&) = default;
 };
+/// To the ledger: the earlier run is still printing and goes on. Answered by Feeder::on_granted.
+struct AdoptRun {
+    RecordNumber printed_through; ///< surely printed
+    RecordNumber sent_through;    ///< the last record in the printer
+    protocol::MailStatus evidence;
+    friend bool operator==(const AdoptRun&, const AdoptRun&) = default;
+};
 /// To the ledger: records up to `through` may go out. Answered by Feeder::on_durable.
 struct AskIntent {
     RecordNumber through;
@@ -69,6 +76,7 @@ enum class NoticeCode {
                         ///< out blank
     error_acknowledged, ///< a mailing error of an earlier run was acknowledged
     printer_warning,    ///< the printer shows a warning or message and prints on
+    taken_over,         ///< the printer was still printing the earlier run, which goes on without a stop
     found_printing,     ///< the printer was still printing the earlier run: it is stopped to learn the truth
     nozzle_opening,     ///< waiting for the nozzle
     entries_differ,     ///< the FIFO holds another number of entries than was sent
@@ -85,7 +93,7 @@ struct End {
 };
 
 using Action = std::variant<std::monostate, Inquire, Command, SetStopAt, SendRecords, SendEndMarker, Settle, BeginRun,
-                            AskIntent, ConfirmPrinted, Notice, End>;
+                            AdoptRun, AskIntent, ConfirmPrinted, Notice, End>;
 std::ostream& operator<<(std::ostream& out, const Action& action);
 
 /// Most actions that one fact can cause.

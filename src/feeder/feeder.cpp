@@ -73,6 +73,7 @@ void Feeder::on_machine_status(const protocol::MachineStatus& status, Instant no
         return;
     case Phase::idle:
     case Phase::locating:
+    case Phase::taking_over:
     case Phase::granting:
     case Phase::flushing:
     case Phase::setting_stop:
@@ -92,6 +93,9 @@ void Feeder::on_mail_status(const protocol::MailStatus& status, Instant now, Act
     case Phase::locating:
     case Phase::judging:
         locate_step(now, out);
+        return;
+    case Phase::taking_over:
+        takeover_step(now, out);
         return;
     case Phase::flushing:
         flushed(now, out);

@@ -38,12 +38,15 @@ struct FeederPlan {
     std::optional<OpenRun> open;
     /// If some of those stay in doubt, nothing is printed before an operator has decided.
     bool doubt_blocks = true;
+    /// The open run may be gone on with if it is found printing.
+    bool take_over = false;
 };
 
 enum class Phase {
     idle,
     identifying,    ///< `?RS`, `?VS`, `?JL`
     locating,       ///< `?SM` twice, `?CC`: where is the printer?
+    taking_over,    ///< found printing the earlier run: `?SM` until it is clear where to go on
     halting,        ///< found printing the earlier run: `!ST`
     opening_nozzle, ///< `!NO`
     acknowledging,  ///< `!EQ`
@@ -122,6 +125,8 @@ private:
     void identified(Instant now, Actions& out);
     void located(Instant now, Actions& out);
     [[nodiscard]] bool prints_earlier_run() const;
+    [[nodiscard]] bool settle_earlier(Instant now, Actions& out);
+    void locate_again(Instant now, Actions& out);
     void check_ready(Instant now, Actions& out);
     void check_errors(Instant now, Actions& out);
     void flushed(Instant now, Actions& out);
@@ -130,6 +135,14 @@ private:
     void verify(Instant now, Actions& out);
     void start_answered(Instant now, Actions& out);
     [[nodiscard]] bool may_acknowledge(const protocol::PrinterError& error) const;
+
+    // feeder_takeover.cpp: found printing the earlier run
+    [[nodiscard]] bool may_take_over() const;
+    void begin_takeover(Instant now, Actions& out);
+    void takeover_step(Instant now, Actions& out);
+    [[nodiscard]] bool printed_something_else() const;
+    void taken_over(RecordRange range, RecordNumber durable_through, Instant now, Actions& out);
+    void halt(Instant now, Actions& out);
 
     // feeder_printing.cpp: reports, refills and the stop point
     void print_status(Instant now, Actions& out);
@@ -171,6 +184,10 @@ private:
     std::optional<Instant> mail_due_;
     std::optional<Instant> status_due_;
 
+    bool taking_over_ = false;
+    std::optional<std::uint64_t> in_printer_through_; ///< by the last `=SM`: printed + entries + 1
+    RecordNumber taken_sent_through_;
+
     std::int32_t acknowledged_ = 0; ///< the error that `!EQ` was sent for
     RecordNumber left_over_;        ///< last printed number that stood in the printer before this run
     bool left_over_passed_ = false; ///< the printer has reported another number since
@@ -184,6 +201,8 @@ private:
     std::optional<Instant> all_printed_at_;
     bool marker_sent_ = false;
     bool any_sent_ = false;
+    bool earlier_settled_ = false;    ///< Settle of the earlier run is out
+    bool fifo_is_ours_ = false;            ///< it was seen empty after `!FF`, or is taken over: it holds nothing but this run
     bool settled_ = false; ///< Settle of this run is out
     std::int32_t error_noticed_ = 0;
     RecordNumber confirmed_through_;

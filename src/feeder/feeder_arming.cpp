@@ -41,25 +41,52 @@ void Feeder::located(Instant now, Actions& out) {
             end(OutcomeCode::busy, out);
             return;
         }
-        out.push_back(Notice{NoticeCode::found_printing, {}});
-        out.push_back(Command{protocol::Action::stop_print});
-        enter(Phase::halting, now, settings_.stop_timeout);
-        ask(Parameter::RS, now, out);
+        if (may_take_over()) {
+            begin_takeover(now, out);
+        } else {
+            halt(now, out);
+        }
         return;
     }
-    if (plan_.open) {
-        const Evidence evidence{.mail = mail_, .printer = facts_};
-        const Verdict verdict = reconcile(*plan_.open, evidence);
-        out.push_back(Settle{verdict, evidence, true});
-        if (!verdict.in_doubt.empty() && plan_.doubt_blocks) {
-            end(OutcomeCode::records_in_doubt, out);
-            return;
-        }
+    // What lies in the FIFO could still be printed by hand, before it may be flushed: its fate is settled at the last moment.
+    if (mail_.entries == 0 && !settle_earlier(now, out)) {
+        return;
     }
     check_ready(now, out);
 }
 
+/// The truth about the earlier run goes to the ledger. False if nothing may be printed because of it.
+bool Feeder::settle_earlier(Instant now, Actions& out) {
+    if (!plan_.open || earlier_settled_) {
+        return true;
+    }
+    const Evidence evidence{.mail = mail_, .printer = facts_};
+    const Verdict verdict = reconcile(*plan_.open, evidence);
+    earlier_settled_ = true;
+    out.push_back(Settle{verdict, evidence, true});
+    if (verdict.in_doubt.empty() || !plan_.doubt_blocks) {
+        return true;
+    }
+    if (mail_.entries > 0) {
+        cause_ = OutcomeCode::records_in_doubt;
+        enter(Phase::clearing, now, settings_.stop_timeout); // nobody may print them while the operator decides
+    } else {
+        end(OutcomeCode::records_in_doubt, out);
+    }
+    return false;
+}
+
+/// Asks once more where the printer is: time has passed since it said so.
+void Feeder::locate_again(Instant now, Actions& out) {
+    enter(Phase::locating, now, settings_.finish_timeout);
+    ask(Parameter::SM, now, out);
+}
+
 void Feeder::check_ready(Instant now, Actions& out) {
+    if (status_.machine == MachineState::printing) {
+        locate_again(now, out); // started by hand meanwhile
+        return;
+    }
     if (status_.cover_open && status_.machine != MachineState::standby) {
         end(OutcomeCode::cover_open, out);
         return;
@@ -110,12 +137,25 @@ void Feeder::check_errors(Instant now, Actions& out) {
         end(OutcomeCode::records_not_taken, out);
         return;
     }
+    if (plan_.open && !earlier_settled_) {
+        if (phase_ != Phase::locating) {
+            locate_again(now, out);
+            return;
+        }
+        if (!settle_earlier(now, out)) {
+            return;
+        }
+    }
     enter(Phase::granting, now, Duration::max());
     out.push_back(BeginRun{facts_, mail_.last_printed});
 }
 
 void Feeder::on_granted(RecordRange range, RecordNumber durable_through, Instant now, Actions& out) {
     if (phase_ != Phase::granting) {
+        return;
+    }
+    if (taking_over_) {
+        taken_over(range, durable_through, now, out);
         return;
     }
     refill_.begin(range, RecordCount{mail_.depth});
@@ -143,6 +183,7 @@ void Feeder::flushed(Instant now, Actions& out) {
         ask_later(Parameter::SM, now);
         return;
     }
+    fifo_is_ours_ = true;
     left_over_ = mail_.last_printed;
     enter(Phase::setting_stop, now, Duration::max());
     out.push_back(SetStopAt{refill_.range().last()});

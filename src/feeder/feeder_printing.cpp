@@ -97,6 +97,7 @@ bool Feeder::stop_point_vanished(Instant now, Actions& out) {
     if (mail_.stop_at == refill_.range().last()) {
         stop_point_ = StopPoint::kept;
         suspected_since_.reset();
+        restarted_ = false;
         return false;
     }
     if (!suspected_since_) {
@@ -106,15 +107,18 @@ bool Feeder::stop_point_vanished(Instant now, Actions& out) {
     return true;
 }
 
-/// The stop point has vanished, and the printer says that it prints.
+/// The stop point has vanished, and the printer says that it prints: it has been started again, or takes its time to
+/// stop.
 void Feeder::stop_suspected(Instant now, Actions& out) {
     if (stop_point_ == StopPoint::kept_idle) {
         stop_point_ = StopPoint::unset; // this firmware keeps it only when it is set after the start
         suspected_since_.reset();
-    } else if (now - *suspected_since_ < stop_patience) {
+        return;
+    }
+    restarted_ = mail_.last_printed != refill_.range().last();
+    if (now - *suspected_since_ < stop_patience) {
         ask_later(Parameter::RS, now);
     } else {
-        restarted_ = mail_.last_printed != refill_.range().last();
         begin_stop(mail_.stop_at == RecordNumber{} ? OutcomeCode::stopped_at_printer : OutcomeCode::impossible_report,
                    now, out);
     }

@@ -30,6 +30,7 @@ void Feeder::on_storage_failed(Instant now, Actions& out) {
     case Phase::idle:
     case Phase::identifying:
     case Phase::locating:
+    case Phase::taking_over:
     case Phase::halting:
     case Phase::opening_nozzle:
     case Phase::acknowledging:
@@ -52,13 +53,19 @@ void Feeder::request_stop(Instant now, Actions& out) {
 
 void Feeder::begin_stop(OutcomeCode cause, Instant now, Actions& out) {
     switch (phase_) {
+    case Phase::taking_over:
+    case Phase::granting:
+        if (phase_ == Phase::taking_over || taking_over_) {
+            out.push_back(Command{protocol::Action::stop_print}); // it prints; the next start finds the truth
+        }
+        end(cause, out);
+        return;
     case Phase::idle:
     case Phase::identifying:
     case Phase::locating:
     case Phase::halting:
     case Phase::opening_nozzle:
     case Phase::acknowledging:
-    case Phase::granting:
         end(cause, out);
         return;
     case Phase::flushing:
@@ -123,9 +130,14 @@ void Feeder::judge(Instant now, Actions& out) {
         evidence.mail.last_printed = range.last();
         evidence.mail.last_print_finished = true;
     }
-    const OpenRun run{range.first(),          confirmed_through_,
-                      refill_.sent_through(), facts_.version ? facts_.version->serial_number : std::string{},
-                      total_before_,          left_over_};
+    // Before the flush the printer may hold records of this run that an earlier one has sent.
+    const bool prints_unflushed = !fifo_is_ours_ && range.contains(mail_.last_printed);
+    const OpenRun run{.first = range.first(),
+                      .printed_through = confirmed_through_,
+                      .issued_through = prints_unflushed ? refill_.durable_through() : refill_.sent_through(),
+                      .serial_number = facts_.version ? facts_.version->serial_number : std::string{},
+                      .total_before = total_before_,
+                      .last_printed_before = left_over_};
     const Verdict verdict = reconcile(run, evidence);
     settled_ = true;
     out.push_back(Settle{verdict, evidence, false});
@@ -144,7 +156,7 @@ void Feeder::judge(Instant now, Actions& out) {
         out.push_back(Command{protocol::Action::acknowledge_errors});
         ask(Parameter::RS, now, out);
     } else if (mail_.entries > 0) {
-        enter(Phase::clearing, now, Duration::max()); // sent and never started: nobody may print them unseen
+        enter(Phase::clearing, now, settings_.stop_timeout); // sent and never started: nobody may print them unseen
     } else {
         end(*cause_, out);
     }
@@ -154,7 +166,7 @@ void Feeder::end(OutcomeCode code, Actions& out) {
     if (phase_ == Phase::ended) {
         return;
     }
-    if (has_granted_records() && !any_sent_ && !settled_) {
+    if (fifo_is_ours_ && !any_sent_ && !settled_) { // granted, and surely not in the printer
         out.push_back(Settle{{.basis = Basis::nothing_issued}, {.mail = mail_, .printer = facts_}, false});
     }
     phase_ = Phase::ended;

@@ -69,17 +69,20 @@ void Feeder::on_deadline(Instant now, Actions& out) {
     case Phase::finishing:
         end(OutcomeCode::finished, out);
         return; // as in on_no_answer()
+    case Phase::clearing:
+        end(*cause_, out); // the ledger does not answer: nothing is flushed
+        return;
     case Phase::locating:
     case Phase::judging:
         deadline_.reset();
         return; // the print in progress had its time: locate_step() goes on without
     case Phase::idle:
     case Phase::identifying:
+    case Phase::taking_over:
     case Phase::granting:
     case Phase::setting_stop:
     case Phase::loading:
     case Phase::printing:
-    case Phase::clearing:
     case Phase::ended:
         deadline_.reset();
         return;

@@ -10,10 +10,10 @@ Pacing::Pacing(const PacingSettings& settings)
     LINEFEED_ASSERT(settings.burst_rate > 0 && settings.polls_per_buffer > 0);
 }
 
-void Pacing::restart(Instant now) {
+void Pacing::restart(Instant now, RecordCount printed) {
     oldest_ = 0;
     size_ = 1;
-    samples_[0] = {RecordCount{0}, now};
+    samples_[0] = {printed, now};
 }
 
 void Pacing::printed(RecordCount count, Instant now) {

@@ -26,7 +26,8 @@ class Pacing {
 public:
     explicit Pacing(const PacingSettings& settings);
 
-    void restart(Instant now);
+    /// `printed` records in all have been printed already.
+    void restart(Instant now, RecordCount printed = {});
     /// `count` records in all have been printed by `now` (the time of the answer). Precondition: count does not fall.
     void printed(RecordCount count, Instant now);
     /// Prints per second over the last second or so; 0 while the line stands still.

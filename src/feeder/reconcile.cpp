@@ -11,8 +11,7 @@ RecordRange behind(RecordNumber number, RecordNumber last) {
 }
 
 Verdict all_in_doubt(const OpenRun& run) {
-    return {
-        .in_doubt = behind(run.printed_through, run.issued_through), .basis = Basis::none};
+    return {.in_doubt = behind(run.printed_through, run.issued_through), .basis = Basis::none};
 }
 
 Verdict printed_through(const OpenRun& run, RecordNumber last, bool last_finished, Basis basis) {
@@ -36,7 +35,8 @@ std::optional<std::uint32_t> prints_since(const OpenRun& run, const Evidence& ev
     return *evidence.printer.total_prints - *run.total_before;
 }
 
-/// The verdict of the counter alone: right as long as the printer has printed nothing but this run.
+/// The verdict of the counter alone: right as long as the printer has printed nothing but this run. A printer that lost
+/// its memory cannot say whether it finished the last print that it counted: that one stays in doubt.
 std::optional<Verdict> by_counter(const OpenRun& run, const Evidence& evidence) {
     const auto prints = prints_since(run, evidence);
     if (!prints || *prints > (run.issued_through - run.first).value() + 1) {
@@ -46,24 +46,32 @@ std::optional<Verdict> by_counter(const OpenRun& run, const Evidence& evidence) 
     if (last < run.printed_through) {
         return std::nullopt;
     }
-    return printed_through(run, last, evidence.mail.last_print_finished, Basis::counter);
+    return printed_through(run, last, false, Basis::counter);
 }
 
 /// What the counter makes of the claim that records up to `last` are printed.
-enum class CounterSays { agrees, more_was_printed, too_few, nothing };
+enum class CounterSays {
+    agrees,
+    more_was_printed, ///< something else was printed besides
+    too_few,          ///< the numbers have skipped records
+    nothing,          ///< it is not reported, or does not move
+};
 
 CounterSays compare_counter(const OpenRun& run, const Evidence& evidence, RecordNumber last) {
     const auto prints = prints_since(run, evidence);
+    LINEFEED_ASSERT(last >= run.first);
+    const std::uint64_t claimed = (last - run.first).value() + 1;
     if (!prints) {
         return CounterSays::nothing;
     }
-    const std::uint64_t claimed = last < run.first ? 0 : (last - run.first).value() + 1;
-    // A print that was started and not finished may or may not have been counted.
-    const std::uint64_t least = evidence.mail.last_print_finished || claimed == 0 ? claimed : claimed - 1;
     if (*prints > claimed) {
         return CounterSays::more_was_printed;
     }
-    return *prints >= least ? CounterSays::agrees : CounterSays::too_few;
+    // A print that was started and not finished may or may not have been counted.
+    if (*prints == claimed || (*prints + 1 == claimed && !evidence.mail.last_print_finished)) {
+        return CounterSays::agrees;
+    }
+    return *prints == 0 ? CounterSays::nothing : CounterSays::too_few;
 }
 
 /// Nothing of the run is confirmed, and the printer reports the number that it had before the run. Either no record was
@@ -109,11 +117,11 @@ Verdict by_number(const OpenRun& run, const Evidence& evidence) {
     switch (counter) {
     case CounterSays::agrees:
         return printed_through(run, reported, evidence.mail.last_print_finished, Basis::mail_status_and_counter);
-    case CounterSays::too_few: // A counter that misses prints the printer itself reports does not work; the number
-                               // does.
     case CounterSays::nothing:
         return printed_through(run, reported, evidence.mail.last_print_finished, Basis::mail_status);
-    case CounterSays::more_was_printed: // Something else was printed: is this number still ours?
+    case CounterSays::too_few: // A stop has emptied the FIFO, and the printer went on behind what it had thrown away.
+        return all_in_doubt(run);
+    case CounterSays::more_was_printed: // Is this number still ours?
         return evidence.uninterrupted
                    ? printed_through(run, reported, evidence.mail.last_print_finished, Basis::mail_status)
                    : all_in_doubt(run);

@@ -19,6 +19,15 @@ void Refill::begin(RecordRange range, RecordCount depth) {
     sent_through_ = printed_through_ = supplied_through_ = durable_through_ = intent_asked_ = range.first().previous();
 }
 
+void Refill::resume(RecordRange range, RecordCount depth, RecordNumber durable_through, RecordNumber sent_through,
+                    RecordNumber printed_through) {
+    begin(range, depth);
+    supplied_through_ = sent_through_ = sent_through;
+    printed_through_ = printed_through;
+    durable_through_ = intent_asked_ = durable_through;
+    check();
+}
+
 void Refill::supplied(RecordNumber through) {
     supplied_through_ = std::max(supplied_through_, std::min(through, range_.last()));
     check();

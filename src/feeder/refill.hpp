@@ -21,6 +21,11 @@ public:
     /// Precondition: the range is not empty and does not begin with 0; depth > 0.
     void begin(RecordRange range, RecordCount depth);
 
+    /// As begin(), for a run that is under way: the printer holds records up to `sent_through` and has printed, or is
+    /// printing, `printed_through`. Precondition: first − 1 ≤ printed_through ≤ sent_through ≤ durable_through.
+    void resume(RecordRange range, RecordCount depth, RecordNumber durable_through, RecordNumber sent_through,
+                RecordNumber printed_through);
+
     /// Records up to `through` are in memory.
     void supplied(RecordNumber through);
     /// Intents up to `through` are durable.
@@ -41,6 +46,7 @@ public:
     [[nodiscard]] RecordRange range() const { return range_; }
     [[nodiscard]] RecordCount depth() const { return depth_; }
     [[nodiscard]] RecordNumber sent_through() const { return sent_through_; }
+    [[nodiscard]] RecordNumber durable_through() const { return durable_through_; }
     [[nodiscard]] RecordNumber printed_through() const { return printed_through_; }
     /// At most so many records are in the printer.
     [[nodiscard]] RecordCount level() const { return sent_through_ - printed_through_; }

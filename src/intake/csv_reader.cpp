@@ -7,12 +7,6 @@
 
 namespace linefeed::intake {
 
-namespace {
-
-constexpr std::size_t block_bytes = std::size_t{256} * 1024;
-
-} // namespace
-
 std::string describe(const CsvRow& row) {
     switch (row.problem) {
     case CsvProblem::none:
@@ -56,9 +50,10 @@ void CsvReader::Finder::shift(std::size_t bytes) {
     }
 }
 
-CsvReader::CsvReader(ReadBytes read_bytes)
+CsvReader::CsvReader(ReadBytes read_bytes, CsvLimits limits)
     : read_bytes_(std::move(read_bytes))
-    , window_(2 * block_bytes) {}
+    , limits_(limits)
+    , window_(2 * limits.block_bytes) {}
 
 void CsvReader::discard_front(std::size_t bytes) {
     std::memmove(window_.data(), window_.data() + bytes, end_ - bytes);
@@ -74,15 +69,15 @@ Result<void> CsvReader::read_more() {
     if (begin_ > 0) {
         discard_front(begin_);
     }
-    if (window_.size() - end_ < block_bytes) {
-        window_.resize(window_.size() + block_bytes);
+    if (window_.size() - end_ < limits_.block_bytes) {
+        window_.resize(window_.size() + limits_.block_bytes);
     }
-    LINEFEED_ASSERT(window_.size() <= max_row_bytes + 2 * block_bytes);
-    const auto got = read_bytes_(std::span{window_}.subspan(end_, block_bytes));
+    LINEFEED_ASSERT(window_.size() <= limits_.row_bytes + 3 * limits_.block_bytes);
+    const auto got = read_bytes_(std::span{window_}.subspan(end_, limits_.block_bytes));
     if (!got) {
         return got.error();
     }
-    LINEFEED_ASSERT(*got <= block_bytes);
+    LINEFEED_ASSERT(*got <= limits_.block_bytes);
     end_ += *got;
     end_of_file_ = *got == 0;
     return {};
@@ -112,8 +107,9 @@ void CsvReader::set_delimiter(CsvDelimiter delimiter) {
 Result<CsvDelimiter> CsvReader::guess_delimiter() {
     while (true) {
         // Begins anew with each block: a few times at most.
-        const auto guess = intake::guess_delimiter({window_.data() + begin_, std::min(end_ - begin_, max_row_bytes)});
-        if (guess.complete || end_of_file_ || end_ - begin_ >= max_row_bytes) {
+        const auto guess =
+            intake::guess_delimiter({window_.data() + begin_, std::min(end_ - begin_, limits_.row_bytes)});
+        if (guess.complete || end_of_file_ || end_ - begin_ >= limits_.row_bytes) {
             return guess.delimiter;
         }
         if (auto done = read_more(); !done) {
@@ -151,7 +147,7 @@ Result<bool> CsvReader::next(CsvRow& row) {
                 return false;
             }
             const std::string_view text{data + begin_, line_end - begin_};
-            if (text.size() > max_row_bytes) {
+            if (text.size() > limits_.row_bytes) {
                 row.problem = CsvProblem::too_long;
             } else {
                 split_plain_row(text, delimiter_, row.fields);
@@ -160,7 +156,7 @@ Result<bool> CsvReader::next(CsvRow& row) {
             finish_row(line_end);
             return true;
         }
-        if (end_ - begin_ > max_row_bytes) {
+        if (end_ - begin_ > limits_.row_bytes) {
             return next_quoted(row);
         }
         if (auto done = read_more(); !done) {
@@ -185,7 +181,7 @@ Result<bool> CsvReader::next_quoted(CsvRow& row) {
             scanner_.end_of_file();
             break;
         }
-        if (scanned - begin_ > max_row_bytes) {
+        if (scanned - begin_ > limits_.row_bytes) {
             dropped += scanned - begin_;
             begin_ = scanned;
         }
@@ -199,7 +195,7 @@ Result<bool> CsvReader::next_quoted(CsvRow& row) {
     line_ += scanner_.line_breaks();
     row.problem = scanner_.problem();
     row.problem_line = quote_line;
-    if (dropped + (scanned - begin_) > max_row_bytes && row.problem != CsvProblem::quote_not_closed) {
+    if (dropped + (scanned - begin_) > limits_.row_bytes && row.problem != CsvProblem::quote_not_closed) {
         row.problem = CsvProblem::too_long;
     }
     if (row.problem == CsvProblem::none) {

@@ -18,6 +18,12 @@ namespace linefeed::intake {
 /// A row that is longer is bad; it is skipped without being stored.
 inline constexpr std::size_t max_row_bytes = std::size_t{1024} * 1024;
 
+/// How much the reader takes at once. Tests use smaller limits, so that small texts reach them.
+struct CsvLimits {
+    std::size_t row_bytes = max_row_bytes;
+    std::size_t block_bytes = std::size_t{256} * 1024; ///< per call of the function that reads
+};
+
 /// One row. The views are valid until the next row is read.
 struct CsvRow {
     std::uint64_t line = 0;   ///< where it begins, from 1; CR LF, LF and CR each end a line
@@ -38,19 +44,19 @@ public:
     /// Fills a part of the span, returns how much; 0 = end of file.
     using ReadBytes = std::function<Result<std::size_t>(std::span<char>)>;
 
-    explicit CsvReader(ReadBytes read_bytes);
+    explicit CsvReader(ReadBytes read_bytes, CsvLimits limits = {});
 
     /// Reads the beginning. Fails with FailureKind::input if it is UTF-16.
     [[nodiscard]] Result<void> open();
     void set_delimiter(CsvDelimiter delimiter);
-    /// Looks at the first row for it (as far as max_row_bytes).
+    /// Looks at the first row for it, as far as a row may reach.
     [[nodiscard]] Result<CsvDelimiter> guess_delimiter();
     /// False at the end of the file. Fails only if reading fails.
     [[nodiscard]] Result<bool> next(CsvRow& row);
 
     /// Bytes behind the last row read.
     [[nodiscard]] std::uint64_t offset() const { return offset_ + begin_; }
-    /// Bytes of memory for the window of the file; never more than max_row_bytes and two blocks.
+    /// Bytes of memory for the window of the file; never more than a row and three blocks.
     [[nodiscard]] std::size_t window_bytes() const { return window_.size(); }
 
 private:
@@ -75,6 +81,7 @@ private:
     void finish_row(std::size_t end);
 
     ReadBytes read_bytes_;
+    CsvLimits limits_;
     std::vector<char> window_;
     std::size_t begin_ = 0;    ///< of the row that comes next
     std::size_t end_ = 0;      ///< of the bytes that were read

@@ -55,7 +55,8 @@ bool Outbox::begin_write() {
 WritePieces Outbox::pieces() const {
     WritePieces result;
     for (const Piece& piece : under_way_.pieces) {
-        result.push_back(piece.slice.empty() ? std::string_view{under_way_.commands}.substr(piece.offset, piece.size) : piece.slice);
+        result.push_back(piece.slice.empty() ? std::string_view{under_way_.commands}.substr(piece.offset, piece.size)
+                                             : piece.slice);
     }
     return result;
 }

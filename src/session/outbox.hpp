@@ -1,5 +1,5 @@
-// What waits to be written to the printer, in order: short commands, kept here, and slices of record pages, kept where they are. All
-// that has gathered while one write was under way goes out in the next, as one gather write.
+// What waits to be written to the printer, in order: short commands, kept here, and slices of record pages, kept where
+// they are. All that has gathered while one write was under way goes out in the next, as one gather write.
 #pragma once
 
 #include "base/bounded_list.hpp"
@@ -10,13 +10,13 @@
 
 namespace linefeed::session {
 
-/// Most pieces of one gather write. While a write is under way no answers come, so few commands gather, and between them at most one
-/// slice of each page at hand.
+/// Most pieces of one gather write. While a write is under way no answers come, so few commands gather, and between
+/// them at most one slice of each page at hand.
 inline constexpr std::size_t max_write_pieces = 48;
 using WritePieces = BoundedList<std::string_view, max_write_pieces>;
 
-/// Flow: commands and slices are staged; begin_write() takes all staged as one write; write_done() when the link has written it.
-/// One write is under way at a time. The bytes of a slice must live until its write is done.
+/// Flow: commands and slices are staged; begin_write() takes all staged as one write; write_done() when the link has
+/// written it. One write is under way at a time. The bytes of a slice must live until its write is done.
 class Outbox {
 public:
     Outbox();
@@ -41,8 +41,8 @@ public:
 
 private:
     struct Piece {
-        std::string_view slice;   ///< empty for a command
-        std::size_t offset = 0;   ///< of a command, in `commands`
+        std::string_view slice; ///< empty for a command
+        std::size_t offset = 0; ///< of a command, in `commands`
         std::size_t size = 0;
     };
     struct Batch {

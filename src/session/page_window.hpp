@@ -1,5 +1,5 @@
-// The record pages at hand in memory, ahead of what has been sent. They belong to the store; the session gives each back when the last of
-// its bytes has been written.
+// The record pages at hand in memory, ahead of what has been sent. They belong to the store; the session gives each
+// back when the last of its bytes has been written.
 #pragma once
 
 #include "base/bounded_list.hpp"

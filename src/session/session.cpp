@@ -11,7 +11,9 @@ using feeder::Actions;
 using protocol::Parameter;
 
 Session::Session(const SessionSettings& settings, const feeder::FeederPlan& plan)
-    : settings_(settings), feeder_(settings.feeder, plan), decoder_(settings.escapes) {}
+    : settings_(settings)
+    , feeder_(settings.feeder, plan)
+    , decoder_(settings.escapes) {}
 
 void Session::on_connected(Instant now, Effects& out) {
     LINEFEED_ASSERT(!connected_ && !closed_);
@@ -50,8 +52,10 @@ bool may_be_answer(const protocol::Frame& frame) {
     case Parameter::SM:
     case Parameter::CC:
     case Parameter::VS:
-    case Parameter::JL: return true;
-    default: return false;
+    case Parameter::JL:
+        return true;
+    default:
+        return false;
     }
 }
 
@@ -94,7 +98,9 @@ void Session::take_frame(const protocol::Frame& frame, Instant now, Actions& act
                 session.feeder_.on_job_name(job, now, actions);
             }
         }
-        void operator()(const protocol::MalformedMessage& message) { session.statistics_.bytes_damaged += message.payload.size(); }
+        void operator()(const protocol::MalformedMessage& message) {
+            session.statistics_.bytes_damaged += message.payload.size();
+        }
         void operator()(const protocol::UnknownMessage&) { expected = false; }
         void operator()(const protocol::ActionMessage&) { expected = false; }
         void operator()(const protocol::InquiryMessage&) { expected = false; }
@@ -239,7 +245,8 @@ std::optional<Instant> Session::next_wake() const {
 
 namespace {
 
-/// A record of blanks. An empty text would not do: the printer shows the job's placeholder for it (Annex B, "zero string").
+/// A record of blanks. An empty text would not do: the printer shows the job's placeholder for it (Annex B, "zero
+/// string").
 void append_end_marker(std::string& out, RecordNumber number, std::size_t fields) {
     std::string payload = "MR" + std::to_string(number.value());
     for (std::size_t i = 0; i < fields; ++i) {
@@ -285,6 +292,7 @@ void Session::carry_out(const feeder::Action& action, Instant now, Effects& out)
         }
         void operator()(const feeder::Settle& settle) const { out.push_back(settle); }
         void operator()(const feeder::BeginRun& begin) const { out.push_back(begin); }
+        void operator()(const feeder::AdoptRun& adopt) const { out.push_back(adopt); }
         void operator()(const feeder::AskIntent& intent) const { out.push_back(intent); }
         void operator()(const feeder::ConfirmPrinted& confirm) const { out.push_back(confirm); }
         void operator()(const feeder::Notice& notice) const { out.push_back(notice); }
@@ -294,10 +302,10 @@ void Session::carry_out(const feeder::Action& action, Instant now, Effects& out)
         }
     };
     if (!connected_ && !std::holds_alternative<feeder::End>(action)) {
-        const bool for_printer = std::holds_alternative<feeder::Inquire>(action) || std::holds_alternative<feeder::Command>(action) ||
-                                 std::holds_alternative<feeder::SetStopAt>(action) ||
-                                 std::holds_alternative<feeder::SendRecords>(action) ||
-                                 std::holds_alternative<feeder::SendEndMarker>(action);
+        const bool for_printer =
+            std::holds_alternative<feeder::Inquire>(action) || std::holds_alternative<feeder::Command>(action) ||
+            std::holds_alternative<feeder::SetStopAt>(action) || std::holds_alternative<feeder::SendRecords>(action) ||
+            std::holds_alternative<feeder::SendEndMarker>(action);
         if (for_printer) {
             return; // there is nobody to hear it
         }

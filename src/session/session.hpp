@@ -1,5 +1,5 @@
-// One printer's conversation: finds frames in the bytes, matches answers with inquiries, keeps time-outs, and turns the feeder's actions
-// into bytes. Bytes, completions and time in; effects out. It does no I/O and reads no clock.
+// One printer's conversation: finds frames in the bytes, matches answers with inquiries, keeps time-outs, and turns the
+// feeder's actions into bytes. Bytes, completions and time in; effects out. It does no I/O and reads no clock.
 #pragma once
 
 #include "base/bounded_list.hpp"
@@ -33,8 +33,8 @@ struct CloseLink {
 };
 
 /// What the edge has to carry out, in order.
-using Effect = std::variant<std::monostate, Write, ReleasePage, CloseLink, feeder::Settle, feeder::BeginRun, feeder::AskIntent,
-                            feeder::ConfirmPrinted, feeder::Notice, feeder::End>;
+using Effect = std::variant<std::monostate, Write, ReleasePage, CloseLink, feeder::Settle, feeder::BeginRun,
+                            feeder::AdoptRun, feeder::AskIntent, feeder::ConfirmPrinted, feeder::Notice, feeder::End>;
 inline constexpr std::size_t max_effects = 48;
 using Effects = BoundedList<Effect, max_effects>;
 
@@ -56,8 +56,8 @@ struct SessionStatistics {
     std::uint64_t bytes_damaged = 0;     ///< outside any frame, or in a frame that cannot be read
 };
 
-/// Flow: on_connected() once; then on_received(), on_written(), on_closed(), the ledger's answers, and on_time() at next_wake(). Each appends
-/// to `out`, in order. After End nothing follows but CloseLink.
+/// Flow: on_connected() once; then on_received(), on_written(), on_closed(), the ledger's answers, and on_time() at
+/// next_wake(). Each appends to `out`, in order. After End nothing follows but CloseLink.
 class Session {
 public:
     Session(const SessionSettings& settings, const feeder::FeederPlan& plan);
@@ -112,7 +112,7 @@ private:
     BoundedList<Inquiry, max_inquiries> inquiries_;
     SessionStatistics statistics_;
     bool connected_ = false;
-    std::optional<feeder::End> end_;      ///< the feeder has ended; its last commands may still be on the way
+    std::optional<feeder::End> end_; ///< the feeder has ended; its last commands may still be on the way
     Instant farewell_deadline_{};
     bool closed_ = false;
 };

@@ -31,8 +31,8 @@ class Result:
         self.code, self.out, self.err = code, out, err
 
     # What stderr may hold besides the one line that says what is wrong: progress, notices, and the sum of bad rows.
-    CONTEXT = re.compile(r"linefeed: (imported \d+ records|importing|printing|acknowledged|stopping the line|nothing is imported: "
-                         r"|the printer (reports|was still printing|does not keep the stop point)|opening the nozzle)")
+    CONTEXT = re.compile(r"linefeed: (imported \d+ records|importing +\d|printing( +\d|$)|acknowledged|stopping the line$|nothing is imported: "
+                         r"|the printer (reports (?!error )|was still printing|does not keep the stop point)|opening the nozzle)")
 
     @property
     def errors(self):
@@ -132,6 +132,7 @@ class Proxy:
         for end in (source, sink):
             with contextlib.suppress(OSError):
                 end.shutdown(socket.SHUT_RDWR)
+        source.close()
 
     def mute(self):
         """From now on no answer of the printer comes through."""

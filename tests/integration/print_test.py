@@ -1,6 +1,8 @@
 """A file end to end: CSV and SQLite, columns, charsets, delimiters, ranges, output."""
 
+import os
 import sqlite3
+import subprocess
 
 import harness
 from harness import names, rows
@@ -228,6 +230,25 @@ class Output(harness.TestCase):
         self.assertFalse(self.spool.exists(), "a dry run leaves no job behind")
         self.assertEqual([], printer.prints())
         self.assertEqual(0, printer.stop()["connections"])
+
+    def test_progress_on_a_terminal(self):
+        records = names(400)
+        printer = self.simulator("--rate", 400)
+        terminal, stderr = os.openpty()
+        self.addCleanup(os.close, terminal)
+        process = subprocess.Popen(self.command(self.write_csv(rows(records)), printer), stdin=subprocess.DEVNULL,
+                                   stdout=subprocess.DEVNULL, stderr=stderr)
+        os.close(stderr)
+        shown = b""
+        try:
+            while data := os.read(terminal, 4096):
+                shown += data
+        except OSError:
+            pass  # the other end is closed: the program has ended
+        self.assertEqual(0, process.wait())
+        self.assertRegex(shown.decode(), r"\r\x1b\[K\[#+-*\] printing +\d+\.\d %  record \d+ of 400  \d+/s  \d+ s left")
+        self.assertTrue(shown.endswith(b"\r\x1b[K"), "the bar is gone at the end")
+        self.assert_printed(records, printer)
 
     def test_version_and_help(self):
         for option, words in (("--version", "linefeed 0."), ("--help", "print")):

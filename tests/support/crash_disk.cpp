@@ -31,8 +31,11 @@ public:
     void apply_what_survives(std::string& content, const CrashDisk::Change& change) {
         const std::size_t index = index_++;
         switch (survival_) {
-        case Survival::nothing: return;
-        case Survival::everything: apply_change(content, change); return;
+        case Survival::nothing:
+            return;
+        case Survival::everything:
+            apply_change(content, change);
+            return;
         case Survival::prefix:
             if (index < edge_) {
                 apply_change(content, change);
@@ -45,18 +48,24 @@ public:
                 apply_change(content, change);
             }
             return;
-        case Survival::torn: tear(content, change); return;
+        case Survival::torn:
+            tear(content, change);
+            return;
         }
     }
 
     [[nodiscard]] bool name_survives() {
         const std::size_t index = index_++;
         switch (survival_) {
-        case Survival::nothing: return false;
-        case Survival::everything: return true;
-        case Survival::prefix: return index < edge_;
+        case Survival::nothing:
+            return false;
+        case Survival::everything:
+            return true;
+        case Survival::prefix:
+            return index < edge_;
         case Survival::subset:
-        case Survival::torn: return kept();
+        case Survival::torn:
+            return kept();
         }
         return false;
     }
@@ -167,7 +176,8 @@ std::size_t CrashDisk::unsynced_changes() const {
 }
 
 DiskImage CrashDisk::image(Survival survival, std::uint64_t seed) const {
-    // Every file that a surviving name may lead to, and the changes to all of them in the order in which they were made.
+    // Every file that a surviving name may lead to, and the changes to all of them in the order in which they were
+    // made.
     std::map<File*, std::string> contents;
     struct Pending {
         std::uint64_t order;

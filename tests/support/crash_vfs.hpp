@@ -40,10 +40,10 @@ inline constexpr std::size_t disk_call_kinds = 7;
 
 /// Calls that fail. A failed write leaves the first half of its bytes; a failed sync drops what was to be synced.
 struct DiskFault {
-    std::vector<DiskCall> kinds;  ///< which calls count; empty = all
-    std::uint64_t at = 0;         ///< the number of the call that fails, counted from set_fault(), from 0
-    bool persists = false;        ///< and all of these kinds after it
-    std::optional<int> code;      ///< SQLite result; absent = the one of the kind: SQLITE_IOERR_WRITE, …_FSYNC, …
+    std::vector<DiskCall> kinds; ///< which calls count; empty = all
+    std::uint64_t at = 0;        ///< the number of the call that fails, counted from set_fault(), from 0
+    bool persists = false;       ///< and all of these kinds after it
+    std::optional<int> code;     ///< SQLite result; absent = the one of the kind: SQLITE_IOERR_WRITE, …_FSYNC, …
 };
 
 /// > 0 while code of the VFS runs on this thread: allocations then are not the product's. For tests that make
@@ -76,6 +76,8 @@ public:
     [[nodiscard]] std::uint64_t failed_calls() const { return failed_calls_; }
     /// Writes beyond this many bytes of all files together fail with SQLITE_FULL; std::nullopt = no limit.
     void set_capacity_bytes(std::optional<std::uint64_t> capacity_bytes) { capacity_bytes_ = capacity_bytes; }
+    /// A disk that lies: syncs succeed and make nothing durable. To see that a test would notice.
+    void set_ignores_syncs(bool ignores_syncs) { ignores_syncs_ = ignores_syncs; }
     [[nodiscard]] const CrashDisk& disk() const { return disk_; }
 
     /// Calls of a kind since construction, failed ones included.
@@ -104,6 +106,7 @@ private:
     std::uint64_t counted_ = 0; ///< calls of the fault's kinds
     std::uint64_t failed_calls_ = 0;
     std::optional<std::uint64_t> capacity_bytes_;
+    bool ignores_syncs_ = false;
 };
 
 } // namespace linefeed::test

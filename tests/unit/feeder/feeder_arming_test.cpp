@@ -1,6 +1,6 @@
 // The feeder from the connection to the first print: in the manual's order, and every reason not to start.
 #include "feeder/mailing_error.hpp"
-#include "unit/feeder/story.hpp"
+#include "story.hpp"
 
 namespace linefeed::feeder {
 namespace {

@@ -1,5 +1,5 @@
 // The feeder while the printer prints: reports, refills, the beat, and the stop point in all its ways.
-#include "unit/feeder/story.hpp"
+#include "story.hpp"
 
 namespace linefeed::feeder {
 namespace {

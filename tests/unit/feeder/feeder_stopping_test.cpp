@@ -1,6 +1,6 @@
 // Every way in which a run ends before its end: whatever happens in whatever phase, the line is stopped, the truth is found where it
 // can be, and nothing happens afterwards.
-#include "unit/feeder/story.hpp"
+#include "story.hpp"
 
 #include <map>
 
@@ -37,6 +37,7 @@ TEST(FeederStopping, shouldStopOnRequestInEveryPhase) {
             {Phase::idle, end("standby, error 0")},
             {Phase::identifying, end("standby, error 0")},
             {Phase::locating, ended(OutcomeCode::stop_requested)},
+            {Phase::taking_over, "!ST; " + end("printing, error 0")},
             {Phase::halting, end("printing, error 0")},
             {Phase::opening_nozzle, end("ready for action, error 0")},
             {Phase::acknowledging, end("ready for print start, error " + std::to_string(end_message))},
@@ -64,12 +65,13 @@ TEST(FeederStopping, shouldEndWhenTheLinkIsLostInEveryPhase) {
             {Phase::idle, end("standby, error 0")},
             {Phase::identifying, end("standby, error 0")},
             {Phase::locating, ended(OutcomeCode::link_lost)},
+            {Phase::taking_over, sent},
             {Phase::halting, sent},
             {Phase::opening_nozzle, end("ready for action, error 0")},
             {Phase::acknowledging, end("ready for print start, error " + std::to_string(end_message))},
             {Phase::granting, ended(OutcomeCode::link_lost)},
-            {Phase::flushing, unused_all + ended(OutcomeCode::link_lost)}, // granted, but nothing went out
-            {Phase::setting_stop, unused_all + ended(OutcomeCode::link_lost)},
+            {Phase::flushing, ended(OutcomeCode::link_lost)}, // the flush may not have arrived
+            {Phase::setting_stop, unused_all + ended(OutcomeCode::link_lost)}, // granted, but nothing went out
             {Phase::loading, unused_all + ended(OutcomeCode::link_lost)},
             {Phase::verifying, ended(OutcomeCode::link_lost)}, // the next start asks the printer about these
             {Phase::starting, ended(OutcomeCode::link_lost)},
@@ -102,6 +104,7 @@ TEST(FeederStopping, shouldStopWhenTheLedgerFailsInEveryPhase) {
             {Phase::idle, end("standby, error 0")},
             {Phase::identifying, end("standby, error 0")},
             {Phase::locating, ended(OutcomeCode::storage_failed)},
+            {Phase::taking_over, "!ST; " + end("printing, error 0")},
             {Phase::halting, end("printing, error 0")},
             {Phase::opening_nozzle, end("ready for action, error 0")},
             {Phase::acknowledging, end("ready for print start, error " + std::to_string(end_message))},
@@ -151,11 +154,12 @@ TEST(FeederStopping, shouldEndWhenThePrinterDoesNotSayItsStateOrPlaceInEveryPhas
                 {Phase::idle, end("standby, error 0")},
                 {Phase::identifying, end("standby, error 0")},
                 {Phase::locating, ended(OutcomeCode::no_answer)},
+                {Phase::taking_over, end("printing, error 0")},
                 {Phase::halting, end("printing, error 0")},
                 {Phase::opening_nozzle, end("ready for action, error 0")},
                 {Phase::acknowledging, end("ready for print start, error " + std::to_string(end_message))},
                 {Phase::granting, ended(OutcomeCode::no_answer)},
-                {Phase::flushing, unused_all + ended(OutcomeCode::no_answer)},
+                {Phase::flushing, ended(OutcomeCode::no_answer)},
                 {Phase::setting_stop, unused_all + ended(OutcomeCode::no_answer)},
                 {Phase::loading, unused_all + ended(OutcomeCode::no_answer)},
                 {Phase::verifying, "!ST; " + ended(OutcomeCode::no_answer)}, // it may still listen
@@ -208,6 +212,8 @@ TEST(FeederStopping, shouldKeepTheDeadlineOfEveryPhase) {
         {Phase::stopping, {seconds{10}, ended(OutcomeCode::did_not_stop, "printing, error 0")}},
         {Phase::locating, {seconds{2}, ""}},
         {Phase::judging, {seconds{2}, ""}},
+        {Phase::taking_over, {seconds{2}, ""}},
+        {Phase::clearing, {seconds{10}, ended(OutcomeCode::stop_requested)}},
         {Phase::finishing,
          {seconds{2}, ended(OutcomeCode::finished, "ready for print start, error " + std::to_string(end_message))}},
     };
@@ -376,7 +382,7 @@ TEST(FeederStopping, shouldStopWhenThePrinterHasLostItsMemory) {
         story.judge(0, back_to, true, 1003);
         const auto& settle = std::get<Settle>(story.actions[0]);
         EXPECT_FALSE(settle.evidence.uninterrupted);
-        story.expect((back_to == 0 ? "settle: printed 103-103, in doubt none, unused 104-106 by total print counter; "
+        story.expect((back_to == 0 ? "settle: printed none, in doubt 103-103, unused 104-106 by total print counter; "
                                    : "settle: printed none, in doubt 103-106, unused none by no evidence; ") +
                      ended(OutcomeCode::printer_restarted));
     }

@@ -178,7 +178,7 @@ inline OpenRun earlier_run() {
 }
 
 inline FeederPlan plan_with(const OpenRun& run, bool doubt_blocks = true) {
-    return {.open = run, .doubt_blocks = doubt_blocks};
+    return {.open = run, .doubt_blocks = doubt_blocks, .take_over = false};
 }
 
 /// A story in which the feeder is in `phase`, with nothing pending.
@@ -186,7 +186,12 @@ inline Story reach(Phase phase) {
     using State = Story::State;
     FeederSettings settings = quick_settings();
     settings.open_nozzle = phase == Phase::opening_nozzle;
-    Story story{settings, phase == Phase::halting ? plan_with(earlier_run()) : FeederPlan{}};
+    FeederPlan plan;
+    if (phase == Phase::halting || phase == Phase::taking_over) {
+        plan = plan_with(earlier_run());
+        plan.take_over = phase == Phase::taking_over;
+    }
+    Story story{settings, plan};
     switch (phase) {
     case Phase::idle: break;
     case Phase::identifying: story.start(); break;
@@ -194,6 +199,12 @@ inline Story reach(Phase phase) {
     case Phase::halting:
         story.identify(State::printing);
         story.locate(150, 950);
+        break;
+    case Phase::taking_over:
+        story.identify(State::printing);
+        story.sm(3, 150, 200);
+        story.sm(3, 150, 200);
+        story.cc(950);
         break;
     case Phase::opening_nozzle:
         story.identify(State::ready);
@@ -252,7 +263,7 @@ inline Story reach(Phase phase) {
 }
 
 inline constexpr std::array all_phases{
-    Phase::idle,     Phase::identifying,   Phase::locating, Phase::halting,  Phase::opening_nozzle, Phase::acknowledging,
+    Phase::idle,     Phase::identifying,   Phase::locating, Phase::taking_over, Phase::halting,  Phase::opening_nozzle, Phase::acknowledging,
     Phase::granting, Phase::flushing,      Phase::setting_stop, Phase::loading, Phase::verifying,   Phase::starting,
     Phase::printing, Phase::stopping,      Phase::judging,  Phase::finishing, Phase::clearing,      Phase::ended,
 };

@@ -9,7 +9,8 @@ using testing::ElementsAre;
 
 const SameName exactly = [](std::string_view wanted, std::string_view column) { return wanted == column; };
 
-Result<std::vector<std::size_t>> choose_of(const std::vector<std::string>& wanted, const std::vector<std::string>& names) {
+Result<std::vector<std::size_t>> choose_of(const std::vector<std::string>& wanted,
+                                           const std::vector<std::string>& names) {
     return choose(wanted, names, names.size(), exactly);
 }
 

@@ -84,8 +84,8 @@ TEST(CsvReader, shouldKeepTextAsItIs) {
 }
 
 TEST(CsvReader, shouldMarkEmptyLines) {
-    EXPECT_THAT(read("\na\n\r\n\n\"\"\n"), ElementsAre("1@0: (empty line)", "2@1: a", "3@3: (empty line)", "4@5: (empty line)",
-                                                      "5@6: "));
+    EXPECT_THAT(read("\na\n\r\n\n\"\"\n"),
+                ElementsAre("1@0: (empty line)", "2@1: a", "3@3: (empty line)", "4@5: (empty line)", "5@6: "));
 }
 
 TEST(CsvReader, shouldSkipAByteOrderMark) {
@@ -107,15 +107,17 @@ TEST(CsvReader, shouldRefuseUtf16) {
 }
 
 TEST(CsvReader, shouldReportRowsOfBadFormAndGoOn) {
-    EXPECT_THAT(read("a,5\" b\nc,d\n"),
-                ElementsAre("1@0: !a quote inside a field that is not quoted (write \"\" inside a quoted field)", "2@7: c|d"));
+    EXPECT_THAT(
+        read("a,5\" b\nc,d\n"),
+        ElementsAre("1@0: !a quote inside a field that is not quoted (write \"\" inside a quoted field)", "2@7: c|d"));
     EXPECT_THAT(read("\"a\nb\"x,d\ne,f\n"), ElementsAre("1@0: !text behind the closing quote of a field", "3@9: e|f"));
 }
 
 TEST(CsvReader, shouldReportAQuoteThatIsNeverClosedWithItsLine) {
     EXPECT_THAT(read("a,b\nc,\"x\ny\",\"d\ne\n\n"),
-                ElementsAre("1@0: a|b", "2@4: !the quote opened in line 3 is never closed: everything up to the end of the file "
-                                        "belongs to this row"));
+                ElementsAre("1@0: a|b",
+                            "2@4: !the quote opened in line 3 is never closed: everything up to the end of the file "
+                            "belongs to this row"));
     EXPECT_THAT(read("\""), ElementsAre(HasSubstr("opened in line 1 is never closed")));
 }
 
@@ -126,9 +128,9 @@ TEST(CsvReader, shouldKnowNoDelimiterIfThereIsNone) {
 TEST(CsvReader, shouldTakeARowOfTheGreatestLengthAndRefuseALongerOne) {
     const std::string longest(max_row_bytes, 'x');
     for (const std::string line_break : {"\n", "\r\n", ""}) {
-        EXPECT_THAT(read_in_portions(longest + line_break, ',', 100'000),
-                    ElementsAre("1@0: " + longest));
-        EXPECT_THAT(read_in_portions(longest + "x" + line_break, ',', 100'000), ElementsAre(HasSubstr("longer than 1 MiB")));
+        EXPECT_THAT(read_in_portions(longest + line_break, ',', 100'000), ElementsAre("1@0: " + longest));
+        EXPECT_THAT(read_in_portions(longest + "x" + line_break, ',', 100'000),
+                    ElementsAre(HasSubstr("longer than 1 MiB")));
     }
     const std::string quoted = "\"" + std::string(max_row_bytes - 2, 'x') + "\"";
     EXPECT_THAT(read_in_portions(quoted + "\n", ',', 100'000), ElementsAre(HasSubstr("xxx")));
@@ -167,7 +169,8 @@ TEST(CsvReader, shouldSkipALongRowToItsEndInBoundedMemory) {
             EXPECT_LE(reader.window_bytes(), max_row_bytes + 512 * 1024);
         }
         const std::string end = std::to_string(10 + 20 * 1024 * 1024 + 2 * quote.size() + 1);
-        EXPECT_THAT(rows, ElementsAre("1@0: first|row", HasSubstr("2@10: !the row is longer"), "3@" + end + ": last|row"));
+        EXPECT_THAT(rows,
+                    ElementsAre("1@0: first|row", HasSubstr("2@10: !the row is longer"), "3@" + end + ": last|row"));
     }
 }
 

@@ -77,12 +77,14 @@ TEST_F(CsvSourceTest, shouldReportRowsWithAnotherNumberOfFields) {
 }
 
 TEST_F(CsvSourceTest, shouldReportRowsOfBadForm) {
-    EXPECT_THAT(rows_of(write("a,b\n\"1\"2,3\n4,5\n")), ElementsAre("2: ! text behind the closing quote of a field", "3: 4|5"));
+    EXPECT_THAT(rows_of(write("a,b\n\"1\"2,3\n4,5\n")),
+                ElementsAre("2: ! text behind the closing quote of a field", "3: 4|5"));
 }
 
 TEST_F(CsvSourceTest, shouldReportEmptyLinesInTheMiddleOnly) {
-    EXPECT_THAT(rows_of(write("a,b\n\n1,2\n\n\r\n3,4\n\n\n\n")),
-                ElementsAre("2: ! the line is empty", "3: 1|2", "4: ! the line is empty", "5: ! the line is empty", "6: 3|4"));
+    EXPECT_THAT(
+        rows_of(write("a,b\n\n1,2\n\n\r\n3,4\n\n\n\n")),
+        ElementsAre("2: ! the line is empty", "3: 1|2", "4: ! the line is empty", "5: ! the line is empty", "6: 3|4"));
     EXPECT_THAT(rows_of(write("a\nx\n\ny\n\n")), ElementsAre("2: x", "3: ! the line is empty", "4: y"));
     EXPECT_THAT(rows_of(write("\n\na\nb\n"), without_header()),
                 ElementsAre("1: ! the line is empty", "2: ! the line is empty", "3: a", "4: b"));
@@ -104,8 +106,9 @@ TEST_F(CsvSourceTest, shouldGiveTheLineWhereARowBegins) {
 }
 
 TEST_F(CsvSourceTest, shouldRefuseAFileWithoutRows) {
-    EXPECT_THAT(refusal_of(write("name,city\n")), (Failure{FailureKind::input, (directory / "source.csv").string() +
-                                                                                   ": the file has a header but no rows"}));
+    EXPECT_THAT(
+        refusal_of(write("name,city\n")),
+        (Failure{FailureKind::input, (directory / "source.csv").string() + ": the file has a header but no rows"}));
     EXPECT_THAT(refusal_of(write("name,city\n\n\n")).message, HasSubstr("a header but no rows"));
     EXPECT_THAT(refusal_of(write("\n\n"), without_header()).message, HasSubstr("the file has no rows"));
     EXPECT_THAT(refusal_of(write("\xEF\xBB\xBF")).message, HasSubstr("line 1 is empty"));
@@ -113,16 +116,20 @@ TEST_F(CsvSourceTest, shouldRefuseAFileWithoutRows) {
 }
 
 TEST_F(CsvSourceTest, shouldRefuseAHeaderThatCannotBeRead) {
-    EXPECT_THAT(refusal_of(write("na\"me,city\na,b\n")).message, HasSubstr("the header in line 1 cannot be read: a quote inside"));
-    EXPECT_THAT(refusal_of(write("a\"b,c\nd,e\n"), without_header()).message,
-                HasSubstr("line 1: a quote inside a field that is not quoted (write \"\" inside a quoted field); without header"));
+    EXPECT_THAT(refusal_of(write("na\"me,city\na,b\n")).message,
+                HasSubstr("the header in line 1 cannot be read: a quote inside"));
+    EXPECT_THAT(
+        refusal_of(write("a\"b,c\nd,e\n"), without_header()).message,
+        HasSubstr(
+            "line 1: a quote inside a field that is not quoted (write \"\" inside a quoted field); without header"));
 }
 
 TEST_F(CsvSourceTest, shouldRefuseUtf16) {
     const auto file = write(std::string{"\xFF\xFE"
                                         "a\0b\0",
                                         6});
-    EXPECT_EQ(refusal_of(file), (Failure{FailureKind::input, file.string() + ": the file is UTF-16: save it as UTF-8"}));
+    EXPECT_EQ(refusal_of(file),
+              (Failure{FailureKind::input, file.string() + ": the file is UTF-16: save it as UTF-8"}));
 }
 
 TEST_F(CsvSourceTest, shouldRefuseTheOptionsOfDatabases) {

@@ -1,5 +1,4 @@
 #include "intake/import.hpp"
-
 #include "intake_fixture.hpp"
 
 #include <nlohmann/json.hpp>
@@ -14,7 +13,8 @@ using testing::HasSubstr;
 class ListSource final : public RowSource {
 public:
     explicit ListSource(std::vector<std::vector<std::string>> rows, std::vector<std::string> names = {"name"})
-        : rows_(std::move(rows)), names_(std::move(names)) {}
+        : rows_(std::move(rows))
+        , names_(std::move(names)) {}
 
     Result<bool> next(Row& row) override {
         row = {};
@@ -88,7 +88,8 @@ TEST_F(ImportTest, shouldFillPagesByRecordsAndByBytes) {
     std::vector<std::vector<std::string>> rows(1030, {"x"});
     rows.resize(1400, {std::string(1000, 'y')});
     const auto job = *import_rows(rows).value().job;
-    EXPECT_EQ(spool->read_page(job.id, RecordNumber{1}).value().range(), RecordRange::closed(RecordNumber{1}, RecordNumber{512}));
+    EXPECT_EQ(spool->read_page(job.id, RecordNumber{1}).value().range(),
+              RecordRange::closed(RecordNumber{1}, RecordNumber{512}));
     const RecordPage full = spool->read_page(job.id, RecordNumber{1100}).value();
     EXPECT_GE(full.frames.size(), 64U * 1024);
     EXPECT_LT(full.frames.size(), 66U * 1024);

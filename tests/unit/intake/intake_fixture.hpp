@@ -46,7 +46,8 @@ protected:
         const auto file = directory / "db.sqlite";
         sqlite3* connection = nullptr;
         EXPECT_EQ(sqlite3_open(file.c_str(), &connection), SQLITE_OK);
-        EXPECT_EQ(sqlite3_exec(connection, sql.c_str(), nullptr, nullptr, nullptr), SQLITE_OK) << sqlite3_errmsg(connection);
+        EXPECT_EQ(sqlite3_exec(connection, sql.c_str(), nullptr, nullptr, nullptr), SQLITE_OK)
+            << sqlite3_errmsg(connection);
         EXPECT_EQ(sqlite3_close(connection), SQLITE_OK);
         return file;
     }

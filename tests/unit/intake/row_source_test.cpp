@@ -25,7 +25,8 @@ TEST_F(RowSourceTest, shouldRefuseWhatIsNotAReadableFile) {
     const auto pipe = directory / "pipe";
     ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
     expect_refused(pipe, "this is a pipe or a device: a source must be a file, so that it can be recognised later");
-    expect_refused("/dev/null", "this is a pipe or a device: a source must be a file, so that it can be recognised later");
+    expect_refused("/dev/null",
+                   "this is a pipe or a device: a source must be a file, so that it can be recognised later");
     const auto below_a_file = write("x") / "y";
     EXPECT_THAT(refusal_of(below_a_file).message, HasSubstr("Not a directory"));
 }
@@ -92,7 +93,9 @@ TEST_F(RowSourceTest, shouldNoticeAChangeInTheWalOfADatabase) {
     const auto file = directory / "db.sqlite";
     sqlite3* connection = nullptr;
     ASSERT_EQ(sqlite3_open(file.c_str(), &connection), SQLITE_OK);
-    const auto run = [&](const char* sql) { ASSERT_EQ(sqlite3_exec(connection, sql, nullptr, nullptr, nullptr), SQLITE_OK); };
+    const auto run = [&](const char* sql) {
+        ASSERT_EQ(sqlite3_exec(connection, sql, nullptr, nullptr, nullptr), SQLITE_OK);
+    };
     run("PRAGMA journal_mode = WAL; CREATE TABLE t (x); PRAGMA wal_checkpoint(TRUNCATE)");
     const auto first = fingerprint(file).value();
     EXPECT_EQ(first.companion, ""); // an empty WAL holds nothing

@@ -59,7 +59,8 @@ TEST_F(SqliteSourceTest, shouldReadNamesThatNeedQuotes) {
 TEST_F(SqliteSourceTest, shouldNotTakeAColumnCalledRowidForTheRowNumber) {
     const auto file = database("CREATE TABLE t (rowid TEXT); INSERT INTO t VALUES ('z'), ('y'), ('x')");
     EXPECT_THAT(rows_of(file), ElementsAre("1: z", "2: y", "3: x"));
-    const auto all = database("CREATE TABLE u (rowid TEXT, _ROWID_ TEXT, oid TEXT); INSERT INTO u VALUES (2, 2, 2), (1, 1, 1)");
+    const auto all =
+        database("CREATE TABLE u (rowid TEXT, _ROWID_ TEXT, oid TEXT); INSERT INTO u VALUES (2, 2, 2), (1, 1, 1)");
     EXPECT_THAT(rows_of(all, table("u", {"oid"})), ElementsAre("1: 2", "2: 1"));
 }
 
@@ -84,7 +85,9 @@ TEST_F(SqliteSourceTest, shouldReadWhatIsStillInTheWal) {
     const auto file = directory / "db.sqlite";
     sqlite3* writer = nullptr;
     ASSERT_EQ(sqlite3_open(file.c_str(), &writer), SQLITE_OK);
-    const auto run = [&](const char* sql) { ASSERT_EQ(sqlite3_exec(writer, sql, nullptr, nullptr, nullptr), SQLITE_OK); };
+    const auto run = [&](const char* sql) {
+        ASSERT_EQ(sqlite3_exec(writer, sql, nullptr, nullptr, nullptr), SQLITE_OK);
+    };
     run("PRAGMA journal_mode = WAL; CREATE TABLE t (x); INSERT INTO t VALUES ('a'), ('b')");
     auto source = open_source(file, {});
     ASSERT_TRUE(source.has_value());
@@ -97,14 +100,15 @@ TEST_F(SqliteSourceTest, shouldReadWhatIsStillInTheWal) {
 
 TEST_F(SqliteSourceTest, shouldNameWhatExistsIfATableOrColumnDoesNot) {
     const auto file = database(std::string{people} + "CREATE TABLE other (x)");
-    EXPECT_EQ(refusal_of(file, table("persons")),
-              (Failure{FailureKind::usage,
-                       file.string() + R"(: there is no table "persons", there are "other", "people")"}));
+    EXPECT_EQ(
+        refusal_of(file, table("persons")),
+        (Failure{FailureKind::usage, file.string() + R"(: there is no table "persons", there are "other", "people")"}));
     EXPECT_EQ(refusal_of(file, table("people", {"zip"})),
               (Failure{FailureKind::usage, file.string() + R"(, table "people": there is no column "zip", there are )"
                                                            R"("name", "City")"}));
-    EXPECT_EQ(refusal_of(file), (Failure{FailureKind::usage, file.string() + R"(: choose one of its tables with --table: )"
-                                                                             R"("other", "people")"}));
+    EXPECT_EQ(refusal_of(file),
+              (Failure{FailureKind::usage, file.string() + R"(: choose one of its tables with --table: )"
+                                                           R"("other", "people")"}));
 }
 
 TEST_F(SqliteSourceTest, shouldRefuseADatabaseWithoutTables) {
@@ -113,7 +117,8 @@ TEST_F(SqliteSourceTest, shouldRefuseADatabaseWithoutTables) {
 }
 
 TEST_F(SqliteSourceTest, shouldReadAQuery) {
-    auto source = open_source(database(people), query("SELECT City || '-' || name AS label, 7 FROM people ORDER BY name"));
+    auto source =
+        open_source(database(people), query("SELECT City || '-' || name AS label, 7 FROM people ORDER BY name"));
     ASSERT_TRUE(source.has_value());
     EXPECT_THAT((*source)->column_names(), ElementsAre("label", "7"));
     EXPECT_THAT(rows_of(**source), ElementsAre("1: y-a|7", "2: z-b|7", "3: x-c|7"));
@@ -123,22 +128,25 @@ TEST_F(SqliteSourceTest, shouldChooseAmongTheColumnsOfAQuery) {
     const auto file = database(people);
     EXPECT_THAT(rows_of(file, query("SELECT *, 'k' AS k FROM people LIMIT 1;", {"K", "1"})), ElementsAre("1: k|c"));
     EXPECT_EQ(refusal_of(file, query("SELECT name FROM people", {"city"})),
-              (Failure{FailureKind::usage, file.string() + R"(, result of the query: there is no column "city", there are "name")"}));
+              (Failure{FailureKind::usage,
+                       file.string() + R"(, result of the query: there is no column "city", there are "name")"}));
 }
 
 TEST_F(SqliteSourceTest, shouldTakeEverythingThatIsOneSelect) {
     const auto file = database(people);
-    EXPECT_THAT(rows_of(file, query("WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n LIMIT 2) SELECT i FROM n")),
-                ElementsAre("1: 1", "2: 2"));
+    EXPECT_THAT(
+        rows_of(file, query("WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n LIMIT 2) SELECT i FROM n")),
+        ElementsAre("1: 1", "2: 2"));
     EXPECT_THAT(rows_of(file, query("VALUES ('x')")), ElementsAre("1: x"));
     EXPECT_THAT(rows_of(file, query("SELECT 1; -- the end\n ; /* really */ ")), ElementsAre("1: 1"));
 }
 
 TEST_F(SqliteSourceTest, shouldRefuseEverythingThatIsNotOneSelect) {
     const auto file = database(people);
-    for (const char* sql : {"DELETE FROM people", "INSERT INTO people VALUES ('1', '2') RETURNING name", "PRAGMA user_version",
-                            "SELECT 1; SELECT 2", "SELECT 1; DROP TABLE people", "SELECT 1; nonsense", "EXPLAIN SELECT 1",
-                            "ATTACH 'x' AS y", "CREATE TEMP TABLE t (x)", "BEGIN", "SELECT * FROM pragma_table_info('people')"}) {
+    for (const char* sql :
+         {"DELETE FROM people", "INSERT INTO people VALUES ('1', '2') RETURNING name", "PRAGMA user_version",
+          "SELECT 1; SELECT 2", "SELECT 1; DROP TABLE people", "SELECT 1; nonsense", "EXPLAIN SELECT 1",
+          "ATTACH 'x' AS y", "CREATE TEMP TABLE t (x)", "BEGIN", "SELECT * FROM pragma_table_info('people')"}) {
         const Failure failure = refusal_of(file, query(sql));
         EXPECT_EQ(failure.kind, FailureKind::usage) << sql;
         EXPECT_THAT(failure.message, HasSubstr("the query is refused: it must be a single SELECT")) << sql;
@@ -151,7 +159,8 @@ TEST_F(SqliteSourceTest, shouldRefuseEverythingThatIsNotOneSelect) {
 }
 
 TEST_F(SqliteSourceTest, shouldNotPrintAMisspeltColumnAsText) {
-    EXPECT_THAT(refusal_of(database(people), query(R"(SELECT "nmae" FROM people)")).message, HasSubstr("no such column: nmae"));
+    EXPECT_THAT(refusal_of(database(people), query(R"(SELECT "nmae" FROM people)")).message,
+                HasSubstr("no such column: nmae"));
 }
 
 TEST_F(SqliteSourceTest, shouldRefuseOptionsThatDoNotFit) {
@@ -182,7 +191,8 @@ TEST_F(SqliteSourceTest, shouldRefuseADamagedDatabase) {
     const Failure failure = refusal_of(file);
     EXPECT_EQ(failure.kind, FailureKind::input);
     EXPECT_THAT(failure.message, HasSubstr("the file is not an SQLite database"));
-    EXPECT_THAT(refusal_of(write(std::string{"SQLite format 3\0", 16}, "db.sqlite")).message, HasSubstr("not an SQLite"));
+    EXPECT_THAT(refusal_of(write(std::string{"SQLite format 3\0", 16}, "db.sqlite")).message,
+                HasSubstr("not an SQLite"));
 }
 
 TEST_F(SqliteSourceTest, shouldFailWhereADamagedTableBreaksOff) {

@@ -59,7 +59,8 @@ TEST_F(SqliteValuesTest, shouldRefuseWhatIsNoText) {
 }
 
 TEST_F(SqliteValuesTest, shouldNameTheColumnAndGoOn) {
-    const auto file = database("CREATE TABLE t (a, b); INSERT INTO t VALUES ('x', NULL), ('', ''), ('y', ''), (NULL, 'z')");
+    const auto file =
+        database("CREATE TABLE t (a, b); INSERT INTO t VALUES ('x', NULL), ('', ''), ('y', ''), (NULL, 'z')");
     EXPECT_EQ(rows_of(file),
               (std::vector<std::string>{"1: ! b: the value is NULL (use COALESCE in --query to print something)",
                                         "2: ! the record is empty", "3: y|",

@@ -1,5 +1,4 @@
 #include "spool/database.hpp"
-
 #include "spool_fixture.hpp"
 
 #include <gmock/gmock.h>
@@ -100,9 +99,8 @@ TEST_F(DatabaseTest, shouldReportTheFullDiskInOneLine) {
     ASSERT_TRUE(database->execute("PRAGMA max_page_count = 3").has_value());
     const auto done = database->execute("INSERT INTO t VALUES (zeroblob(100000))");
     ASSERT_FALSE(done.has_value());
-    EXPECT_EQ(done.error(),
-              (Failure{FailureKind::storage,
-                       path.string() + ": the disk is full (SQLITE_FULL): database or disk is full"}));
+    EXPECT_EQ(done.error(), (Failure{FailureKind::storage,
+                                     path.string() + ": the disk is full (SQLITE_FULL): database or disk is full"}));
     EXPECT_EQ(database->last_error(), SQLITE_FULL);
 }
 

@@ -9,9 +9,9 @@ namespace linefeed::spool {
 
 /// The faults to come; one set for the whole process.
 struct DiskFaults {
-    long calls = 0;           ///< writes, truncations and syncs so far
-    long fail_at = -1;        ///< the number of the call that fails, from 0; negative = none
-    bool persists = false;    ///< every later one fails too
+    long calls = 0;        ///< writes, truncations and syncs so far
+    long fail_at = -1;     ///< the number of the call that fails, from 0; negative = none
+    bool persists = false; ///< every later one fails too
     int write_code = SQLITE_FULL;
     int sync_code = SQLITE_IOERR_FSYNC;
     long failed = 0; ///< calls that were made to fail

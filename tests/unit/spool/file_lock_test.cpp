@@ -1,5 +1,4 @@
 #include "spool/file_lock.hpp"
-
 #include "spool_fixture.hpp"
 
 #include <gmock/gmock.h>

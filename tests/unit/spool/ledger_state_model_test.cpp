@@ -21,12 +21,16 @@ struct Model {
     std::array<Fate, record_count> records;
 
     static std::optional<RecordState> next(LedgerKind kind, RecordState state) {
-        const bool printable = state == RecordState::fresh || state == RecordState::unused || state == RecordState::released;
+        const bool printable =
+            state == RecordState::fresh || state == RecordState::unused || state == RecordState::released;
         const bool undecided = state == RecordState::open || state == RecordState::in_doubt;
         switch (kind) {
-        case LedgerKind::intent: return printable ? std::optional{RecordState::open} : std::nullopt;
-        case LedgerKind::printed: return undecided ? std::optional{RecordState::printed} : std::nullopt;
-        case LedgerKind::unused: return undecided ? std::optional{RecordState::unused} : std::nullopt;
+        case LedgerKind::intent:
+            return printable ? std::optional{RecordState::open} : std::nullopt;
+        case LedgerKind::printed:
+            return undecided ? std::optional{RecordState::printed} : std::nullopt;
+        case LedgerKind::unused:
+            return undecided ? std::optional{RecordState::unused} : std::nullopt;
         case LedgerKind::in_doubt:
             return state == RecordState::open ? std::optional{RecordState::in_doubt} : std::nullopt;
         case LedgerKind::skipped:
@@ -34,7 +38,8 @@ struct Model {
         case LedgerKind::released:
             return state == RecordState::in_doubt ? std::optional{RecordState::released} : std::nullopt;
         case LedgerKind::run_started:
-        case LedgerKind::run_ended: return state;
+        case LedgerKind::run_ended:
+            return state;
         }
         return std::nullopt;
     }
@@ -97,8 +102,9 @@ void expect_same_offer(const LedgerState& state, const Model& model, RecordRange
 
 TEST(LedgerStateModel, shouldAgreeWithAStateForEachRecord) {
     std::mt19937_64 random{20240607};
-    constexpr LedgerKind kinds[] = {LedgerKind::intent,  LedgerKind::printed,  LedgerKind::unused,     LedgerKind::in_doubt,
-                                    LedgerKind::skipped, LedgerKind::released, LedgerKind::run_started};
+    constexpr LedgerKind kinds[] = {LedgerKind::intent,     LedgerKind::printed, LedgerKind::unused,
+                                    LedgerKind::in_doubt,   LedgerKind::skipped, LedgerKind::released,
+                                    LedgerKind::run_started};
     int applied = 0;
     for (int round = 0; round < 300; ++round) {
         LedgerState state;

@@ -1,5 +1,4 @@
 #include "spool/ledger.hpp"
-
 #include "spool_fixture.hpp"
 
 #include <gmock/gmock.h>
@@ -37,19 +36,27 @@ LedgerState with(RecordState wanted) {
     const LedgerEntry intent = entry(LedgerKind::intent, records);
     const LedgerEntry in_doubt = entry(LedgerKind::in_doubt, records);
     switch (wanted) {
-    case RecordState::fresh: return {};
-    case RecordState::open: return after({intent});
-    case RecordState::printed: return after({intent, entry(LedgerKind::printed, records)});
-    case RecordState::unused: return after({intent, entry(LedgerKind::unused, records)});
-    case RecordState::in_doubt: return after({intent, in_doubt});
-    case RecordState::skipped: return after({intent, in_doubt, entry(LedgerKind::skipped, records)});
-    case RecordState::released: return after({intent, in_doubt, entry(LedgerKind::released, records)});
+    case RecordState::fresh:
+        return {};
+    case RecordState::open:
+        return after({intent});
+    case RecordState::printed:
+        return after({intent, entry(LedgerKind::printed, records)});
+    case RecordState::unused:
+        return after({intent, entry(LedgerKind::unused, records)});
+    case RecordState::in_doubt:
+        return after({intent, in_doubt});
+    case RecordState::skipped:
+        return after({intent, in_doubt, entry(LedgerKind::skipped, records)});
+    case RecordState::released:
+        return after({intent, in_doubt, entry(LedgerKind::released, records)});
     }
     return {};
 }
 
-constexpr RecordState all_states[] = {RecordState::fresh,    RecordState::open,    RecordState::printed, RecordState::unused,
-                                      RecordState::in_doubt, RecordState::skipped, RecordState::released};
+constexpr RecordState all_states[] = {RecordState::fresh,   RecordState::open,     RecordState::printed,
+                                      RecordState::unused,  RecordState::in_doubt, RecordState::skipped,
+                                      RecordState::released};
 
 struct Law {
     LedgerKind kind;
@@ -90,7 +97,8 @@ TEST(LedgerState, shouldAllowExactlyTheTransitionsOfTheLaw) {
 TEST(LedgerState, shouldRefuseARowIfASingleRecordContradictsIt) {
     for (const Law& law : laws()) {
         for (const RecordRange records : {range(10, 20), range(11, 21)}) {
-            LedgerState state = with(law.may_follow.front() == RecordState::fresh ? RecordState::unused : law.may_follow.front());
+            LedgerState state =
+                with(law.may_follow.front() == RecordState::fresh ? RecordState::unused : law.may_follow.front());
             // The record beside the ten is made one that the row must not name.
             const RecordNumber odd{records.first().value() == 10 ? 10U : 21U};
             ASSERT_TRUE(state.apply(entry(LedgerKind::intent, RecordRange::closed(odd, odd))));
@@ -129,8 +137,9 @@ TEST(LedgerState, shouldNotChangeWithARowAboutNoRecords) {
 }
 
 TEST(LedgerState, shouldJoinStridesOfOneRun) {
-    const LedgerState state = after({entry(LedgerKind::intent, range(1, 10)), entry(LedgerKind::intent, range(11, 30)),
-                                     entry(LedgerKind::printed, range(1, 4)), entry(LedgerKind::printed, range(5, 12))});
+    const LedgerState state =
+        after({entry(LedgerKind::intent, range(1, 10)), entry(LedgerKind::intent, range(11, 30)),
+               entry(LedgerKind::printed, range(1, 4)), entry(LedgerKind::printed, range(5, 12))});
     EXPECT_THAT(state.segments(), ElementsAre(LedgerSegment{range(1, 12), RecordState::printed, run_1},
                                               LedgerSegment{range(13, 30), RecordState::open, run_1}));
 }
@@ -150,8 +159,7 @@ TEST(LedgerState, shouldNotJoinAcrossAGapOrAnotherRun) {
 }
 
 TEST(LedgerState, shouldSplitAStretchInThree) {
-    const LedgerState state =
-        after({entry(LedgerKind::intent, range(1, 9)), entry(LedgerKind::in_doubt, range(4, 6))});
+    const LedgerState state = after({entry(LedgerKind::intent, range(1, 9)), entry(LedgerKind::in_doubt, range(4, 6))});
     EXPECT_THAT(state.segments(), ElementsAre(LedgerSegment{range(1, 3), RecordState::open, run_1},
                                               LedgerSegment{range(4, 6), RecordState::in_doubt, run_1},
                                               LedgerSegment{range(7, 9), RecordState::open, run_1}));
@@ -178,8 +186,7 @@ TEST(LedgerState, shouldReachFromTheFirstToTheLastNumber) {
 }
 
 TEST(LedgerState, shouldKnowTheStateOfEachRecord) {
-    const LedgerState state =
-        after({entry(LedgerKind::intent, range(5, 9)), entry(LedgerKind::printed, range(5, 6))});
+    const LedgerState state = after({entry(LedgerKind::intent, range(5, 9)), entry(LedgerKind::printed, range(5, 6))});
     EXPECT_EQ(state.state_of(RecordNumber{4}), RecordState::fresh);
     EXPECT_EQ(state.state_of(RecordNumber{5}), RecordState::printed);
     EXPECT_EQ(state.state_of(RecordNumber{6}), RecordState::printed);
@@ -220,9 +227,9 @@ TEST(LedgerState, shouldOfferTheFirstStretchThatMayBeIssued) {
 }
 
 TEST(LedgerState, shouldOfferFreshUnusedAndReleasedRecordsInOneStretch) {
-    const LedgerState state = after(
-        {entry(LedgerKind::intent, range(5, 8)), entry(LedgerKind::unused, range(5, 6)), entry(LedgerKind::in_doubt, range(7, 8)),
-         entry(LedgerKind::released, range(7, 8)), entry(LedgerKind::intent, range(20, 20))});
+    const LedgerState state = after({entry(LedgerKind::intent, range(5, 8)), entry(LedgerKind::unused, range(5, 6)),
+                                     entry(LedgerKind::in_doubt, range(7, 8)), entry(LedgerKind::released, range(7, 8)),
+                                     entry(LedgerKind::intent, range(20, 20))});
     EXPECT_EQ(state.next_printable(range(1, 100)), range(1, 19));
 }
 

@@ -1,5 +1,4 @@
 #include "spool/ledger.hpp"
-
 #include "spool/ledger_codec.hpp"
 #include "spool_fixture.hpp"
 
@@ -8,7 +7,7 @@
 namespace linefeed::spool {
 namespace {
 
-constexpr LedgerKind all_kinds[] = {LedgerKind::run_started, LedgerKind::intent,  LedgerKind::printed,
+constexpr LedgerKind all_kinds[] = {LedgerKind::run_started, LedgerKind::intent,   LedgerKind::printed,
                                     LedgerKind::unused,      LedgerKind::in_doubt, LedgerKind::skipped,
                                     LedgerKind::released,    LedgerKind::run_ended};
 
@@ -34,7 +33,8 @@ TEST(LedgerNames, shouldReadBackEveryState) {
 TEST(LedgerHash, shouldBeTheSha256OfOneFieldALine) {
     // printf '<64 zeros>\n1\n2\nintent\n3\n4\n5\n6\n2\n{}' | sha256sum
     const LedgerEntry entry{LedgerKind::intent, RunId{3}, range(4, 8), "{}"};
-    EXPECT_EQ(ledger_hash(first_previous_hash, 1, JobId{2}, entry, 6), "35108ed0b33c8f1e0145b2a5cdc6c71e2a7efa7d1ef64b382abfa47e6607a796");
+    EXPECT_EQ(ledger_hash(first_previous_hash, 1, JobId{2}, entry, 6),
+              "35108ed0b33c8f1e0145b2a5cdc6c71e2a7efa7d1ef64b382abfa47e6607a796");
 }
 
 TEST(LedgerHash, shouldChangeWithEveryField) {

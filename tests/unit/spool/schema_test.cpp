@@ -1,5 +1,4 @@
 #include "spool/schema.hpp"
-
 #include "spool_fixture.hpp"
 
 #include <gmock/gmock.h>

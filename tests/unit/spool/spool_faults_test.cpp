@@ -147,7 +147,8 @@ public:
     }
 
 private:
-    template <typename T> bool keep(const Result<T>& result) {
+    template <typename T>
+    bool keep(const Result<T>& result) {
         if (!result) {
             failure = result.error();
         }

@@ -1,4 +1,5 @@
-// A spool in a directory of its own, jobs with simple content, and a second connection for looking at and damaging the file.
+// A spool in a directory of its own, jobs with simple content, and a second connection for looking at and damaging the
+// file.
 #pragma once
 
 #include "spool/spool.hpp"

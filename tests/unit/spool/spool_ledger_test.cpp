@@ -35,8 +35,9 @@ TEST_F(SpoolLedgerTest, shouldKeepRowsInOrderWithTimeAndEvidence) {
     now_ns = 5;
     const RunId run = begin_run();
     now_ns = 9;
-    ASSERT_TRUE(append(*spool, job.id,
-                       {{LedgerKind::intent, run, range(1, 20), ""}, {LedgerKind::printed, run, range(1, 3), R"({"sm":3})"}}));
+    ASSERT_TRUE(
+        append(*spool, job.id,
+               {{LedgerKind::intent, run, range(1, 20), ""}, {LedgerKind::printed, run, range(1, 3), R"({"sm":3})"}}));
     reopen();
     const auto rows = spool->ledger_rows(job.id, 0, 10).value();
     ASSERT_EQ(rows.size(), 3U);
@@ -76,14 +77,14 @@ TEST_F(SpoolLedgerTest, shouldKnowTheSameStateAfterReopening) {
                         {LedgerKind::in_doubt, run, range(21, 21), ""}}));
     ASSERT_TRUE(append(*spool, job.id, {{LedgerKind::unused, run, range(22, 50), ""}}));
     const LedgerState before = spool->ledger_state(job.id).value();
-    EXPECT_THAT(before.segments(),
-                ElementsAre(LedgerSegment{range(1, 20), RecordState::printed, run},
-                            LedgerSegment{range(21, 21), RecordState::in_doubt, run},
-                            LedgerSegment{range(22, 50), RecordState::unused, run}));
+    EXPECT_THAT(before.segments(), ElementsAre(LedgerSegment{range(1, 20), RecordState::printed, run},
+                                               LedgerSegment{range(21, 21), RecordState::in_doubt, run},
+                                               LedgerSegment{range(22, 50), RecordState::unused, run}));
     reopen();
     EXPECT_EQ(spool->ledger_state(job.id).value(), before);
     EXPECT_EQ(spool->verify_ledger().value(), 5);
-    EXPECT_EQ(before.count(RecordState::printed) + before.count(RecordState::in_doubt) + before.count(RecordState::unused),
+    EXPECT_EQ(before.count(RecordState::printed) + before.count(RecordState::in_doubt) +
+                  before.count(RecordState::unused),
               RecordCount{50});
 }
 
@@ -134,7 +135,8 @@ TEST_F(SpoolLedgerTest, shouldRefuseRowsOfAnUnknownRun) {
     }
     EXPECT_FALSE(append(*spool, other.id, {{LedgerKind::intent, run, range(1, 1), ""}}).has_value());
     ASSERT_TRUE(append(*spool, job.id, {{LedgerKind::intent, run, range(1, 1), ""}}));
-    EXPECT_FALSE(append(*spool, job.id, {{LedgerKind::printed, RunId{2}, range(1, 1), ""}}).has_value()); // row 2 is an intent
+    EXPECT_FALSE(
+        append(*spool, job.id, {{LedgerKind::printed, RunId{2}, range(1, 1), ""}}).has_value()); // row 2 is an intent
 }
 
 TEST_F(SpoolLedgerTest, shouldOnlyStartRunsThroughBeginRun) {

@@ -83,12 +83,13 @@ TEST_P(DamagedPage, shouldBeDetectedWhenItIsRead) {
 
 INSTANTIATE_TEST_SUITE_P(
     Spool, DamagedPage,
-    testing::Values("UPDATE pages SET frames = CAST(replace(CAST(frames AS TEXT), 'name 15', 'name 51') AS BLOB) WHERE first = 11",
-                    "UPDATE pages SET ends = zeroblob(length(ends)) WHERE first = 11",
-                    "UPDATE pages SET ends = substr(ends, 1, 36) WHERE first = 11",
-                    "UPDATE pages SET crc = crc + 1 WHERE first = 11", "UPDATE pages SET records = 9 WHERE first = 11",
-                    "UPDATE pages SET first = 12 WHERE first = 11", "DELETE FROM pages WHERE first = 11",
-                    "UPDATE pages SET frames = (SELECT frames FROM pages WHERE first = 1) WHERE first = 11"));
+    testing::Values(
+        "UPDATE pages SET frames = CAST(replace(CAST(frames AS TEXT), 'name 15', 'name 51') AS BLOB) WHERE first = 11",
+        "UPDATE pages SET ends = zeroblob(length(ends)) WHERE first = 11",
+        "UPDATE pages SET ends = substr(ends, 1, 36) WHERE first = 11",
+        "UPDATE pages SET crc = crc + 1 WHERE first = 11", "UPDATE pages SET records = 9 WHERE first = 11",
+        "UPDATE pages SET first = 12 WHERE first = 11", "DELETE FROM pages WHERE first = 11",
+        "UPDATE pages SET frames = (SELECT frames FROM pages WHERE first = 1) WHERE first = 11"));
 
 TEST_F(SpoolPagesTest, shouldAbortOnAPageThatDoesNotFollow) {
     Spool spool = open();

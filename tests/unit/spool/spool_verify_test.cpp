@@ -42,21 +42,23 @@ TEST_P(TamperedLedger, shouldBeFound) {
 
 INSTANTIATE_TEST_SUITE_P(
     Spool, TamperedLedger,
-    testing::Values(
-        Tampering{"UPDATE ledger SET records = 19 WHERE sequence = 3", "ledger row 3 was changed"},
-        Tampering{"UPDATE ledger SET first = 2 WHERE sequence = 2", "ledger row 2 was changed"},
-        Tampering{"UPDATE ledger SET kind = 'unused' WHERE sequence = 3", "ledger row 3 was changed"},
-        Tampering{"UPDATE ledger SET evidence = '{ }' WHERE sequence = 1", "ledger row 1 was changed"},
-        Tampering{"UPDATE ledger SET time_ns = 0 WHERE sequence = 4", "ledger row 4 was changed"},
-        Tampering{"UPDATE ledger SET hash = randomblob(32) WHERE sequence = 2", "ledger row 2 was changed"},
-        Tampering{"UPDATE ledger SET kind = 'maybe' WHERE sequence = 2", "ledger row 2 is damaged"},
-        Tampering{"UPDATE ledger SET first = -1 WHERE sequence = 2", "ledger row 2 is damaged"},
-        Tampering{"DELETE FROM ledger WHERE sequence = 2", "ledger row 2 is missing"},
-        Tampering{"DELETE FROM ledger WHERE sequence > 2", "the stored state of job 1 was changed"},
-        Tampering{"UPDATE ledger_segments SET state = 'unused' WHERE first = 21", "the stored state of job 1 was changed"},
-        Tampering{"DELETE FROM ledger_segments", "the stored state of job 1 was changed"},
-        Tampering{"INSERT INTO ledger_segments VALUES (2, 1, 1, 'printed', 1)", "the stored state of job 2 was changed"},
-        Tampering{"UPDATE ledger_segments SET records = 25 WHERE first = 1", "the ledger state of job 1 cannot be read"}));
+    testing::Values(Tampering{"UPDATE ledger SET records = 19 WHERE sequence = 3", "ledger row 3 was changed"},
+                    Tampering{"UPDATE ledger SET first = 2 WHERE sequence = 2", "ledger row 2 was changed"},
+                    Tampering{"UPDATE ledger SET kind = 'unused' WHERE sequence = 3", "ledger row 3 was changed"},
+                    Tampering{"UPDATE ledger SET evidence = '{ }' WHERE sequence = 1", "ledger row 1 was changed"},
+                    Tampering{"UPDATE ledger SET time_ns = 0 WHERE sequence = 4", "ledger row 4 was changed"},
+                    Tampering{"UPDATE ledger SET hash = randomblob(32) WHERE sequence = 2", "ledger row 2 was changed"},
+                    Tampering{"UPDATE ledger SET kind = 'maybe' WHERE sequence = 2", "ledger row 2 is damaged"},
+                    Tampering{"UPDATE ledger SET first = -1 WHERE sequence = 2", "ledger row 2 is damaged"},
+                    Tampering{"DELETE FROM ledger WHERE sequence = 2", "ledger row 2 is missing"},
+                    Tampering{"DELETE FROM ledger WHERE sequence > 2", "the stored state of job 1 was changed"},
+                    Tampering{"UPDATE ledger_segments SET state = 'unused' WHERE first = 21",
+                              "the stored state of job 1 was changed"},
+                    Tampering{"DELETE FROM ledger_segments", "the stored state of job 1 was changed"},
+                    Tampering{"INSERT INTO ledger_segments VALUES (2, 1, 1, 'printed', 1)",
+                              "the stored state of job 2 was changed"},
+                    Tampering{"UPDATE ledger_segments SET records = 25 WHERE first = 1",
+                              "the ledger state of job 1 cannot be read"}));
 
 class ForgedLedger : public TamperedLedger {
 protected:
@@ -66,9 +68,9 @@ protected:
         const std::string hash = ledger_hash(previous, 5, job, entry, 9);
         const std::string done =
             sql("INSERT INTO ledger VALUES (5, " + std::to_string(static_cast<std::int64_t>(job)) + ", '" +
-                std::string{to_string(entry.kind)} + "', " + std::to_string(static_cast<std::int64_t>(entry.run)) + ", " +
-                std::to_string(entry.range.first().value()) + ", " + std::to_string(entry.range.count().value()) + ", '" +
-                entry.evidence + "', 9, x'" + hash + "')");
+                std::string{to_string(entry.kind)} + "', " + std::to_string(static_cast<std::int64_t>(entry.run)) +
+                ", " + std::to_string(entry.range.first().value()) + ", " +
+                std::to_string(entry.range.count().value()) + ", '" + entry.evidence + "', 9, x'" + hash + "')");
         ASSERT_EQ(done, "");
     }
     std::string verdict() {

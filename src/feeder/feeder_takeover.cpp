@@ -1,0 +1,96 @@
+// Taking over a printer that is found printing the earlier run: no stop, no flush, the line goes on. What was sent
+// before the interruption is not known here, so the printer's own words decide where the next record belongs: entries =
+// sent − printed − 1 (protocol, section 5), in two answers that agree. Should a firmware count differently, the
+// numbering law turns the mistake into a stop (1019), never into a record printed twice or left out.
+#include "feeder/feeder.hpp"
+
+#include <algorithm>
+
+namespace linefeed::feeder {
+
+using protocol::Parameter;
+
+namespace {
+
+/// Answers that may disagree before the printer is stopped instead: records of the old connection may still be
+/// arriving.
+constexpr int max_takeover_reads = 6;
+
+} // namespace
+
+/// The printer prints the earlier run and reports a record of it: it may be taken over.
+bool Feeder::may_take_over() const {
+    return plan_.take_over && mail_.last_printed >= plan_.open->first && mail_.entries > 0;
+}
+
+void Feeder::begin_takeover(Instant now, Actions& out) {
+    enter(Phase::taking_over, now, settings_.finish_timeout);
+    in_printer_through_.reset();
+    ask(Parameter::SM, now, out);
+}
+
+/// One more answer while the printer prints on.
+void Feeder::takeover_step(Instant now, Actions& out) {
+    const OpenRun& run = *plan_.open;
+    const std::uint64_t in_printer_through = std::uint64_t{mail_.last_printed.value()} + mail_.entries + 1;
+    const bool fits = std::uint64_t{mail_.entries} + 1 <= mail_.depth; // the loaded record counts as well
+    const bool plausible =
+        prints_earlier_run() && may_take_over() && fits && in_printer_through <= run.issued_through.value();
+    const bool agrees = in_printer_through_ == in_printer_through;
+    in_printer_through_ = in_printer_through;
+    if (!plausible || mail_reads_ > max_takeover_reads || printed_something_else()) {
+        halt(now, out);
+    } else if (!agrees) {
+        ask(Parameter::SM, now, out);
+    } else {
+        const RecordNumber sure = mail_.last_print_finished ? mail_.last_printed : mail_.last_printed.previous();
+        taken_sent_through_ = RecordNumber{static_cast<std::uint32_t>(in_printer_through)};
+        enter(Phase::granting, now, Duration::max());
+        taking_over_ = true;
+        out.push_back(AdoptRun{std::max(sure, run.printed_through), taken_sent_through_, mail_});
+    }
+}
+
+/// The total print counter has moved further than the records of this run account for.
+bool Feeder::printed_something_else() const {
+    const OpenRun& run = *plan_.open;
+    if (!run.total_before || !facts_.total_prints) {
+        return false;
+    }
+    const std::uint32_t prints = *facts_.total_prints - *run.total_before;
+    return prints > (mail_.last_printed - run.first).value() + 1; // mail_ is newer than the counter
+}
+
+/// The ledger has adopted the earlier run: printing goes on where it is.
+void Feeder::taken_over(RecordRange range, RecordNumber durable_through, Instant now, Actions& out) {
+    const OpenRun& run = *plan_.open;
+    confirmed_through_ = mail_.last_print_finished ? mail_.last_printed : mail_.last_printed.previous();
+    confirmed_through_ = std::max(confirmed_through_, run.printed_through);
+    refill_.resume(range, RecordCount{mail_.depth}, durable_through, taken_sent_through_, mail_.last_printed);
+    total_before_ = run.total_before;
+    left_over_ = run.last_printed_before;
+    left_over_passed_ = true;
+    any_sent_ = true;
+    fifo_is_ours_ = true;
+    enter(Phase::printing, now, Duration::max());
+    pacing_.restart(now, refill_.printed_through() - range.first().previous());
+    out.push_back(Notice{NoticeCode::taken_over, {}});
+    out.push_back(Notice{NoticeCode::printing_started, {}});
+    stop_point_ = mail_.stop_at == range.last() ? StopPoint::kept : StopPoint::unset;
+    if (stop_point_ == StopPoint::unset) {
+        out.push_back(SetStopAt{range.last()});
+        ++stop_point_tries_;
+    }
+    status_due_ = now + settings_.status_interval;
+    ask(Parameter::SM, now, out);
+}
+
+/// The printer is stopped to learn where it is.
+void Feeder::halt(Instant now, Actions& out) {
+    out.push_back(Notice{NoticeCode::found_printing, {}});
+    out.push_back(Command{protocol::Action::stop_print});
+    enter(Phase::halting, now, settings_.stop_timeout);
+    ask(Parameter::RS, now, out);
+}
+
+} // namespace linefeed::feeder

@@ -1,0 +1,105 @@
+// The host: the program `linefeed print` as the product drives session, store and ledger (src/daemon/job_run.cpp, src/cli/print_command.cpp),
+// as a process that can be paused and killed at any step, on a machine that can lose its power.
+#pragma once
+
+#include "cli/operator_word.hpp"
+#include "context.hpp"
+#include "judge.hpp"
+#include "ram_disk.hpp"
+#include "random.hpp"
+#include "session/session.hpp"
+#include "virtual_store.hpp"
+#include "wire.hpp"
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace linefeed::simulation {
+
+/// What the operator was told at the end.
+struct Ending {
+    feeder::OutcomeCode code = feeder::OutcomeCode::finished;
+    std::vector<RecordRange> in_doubt;
+    bool complete = false; ///< nothing is left to print
+};
+
+class Host {
+public:
+    Host(Context& context, Judge& judge, Wire& wire, Random random);
+    ~Host();
+
+    /// Reads the file into the spool. A violation if that fails.
+    void import_job();
+    /// The operator enters the command. Precondition: not running.
+    void start(const cli::OperatorWord& word);
+    [[nodiscard]] bool running() const { return run_ != nullptr; }
+    [[nodiscard]] const Ending& ending() const { return ending_; }
+    [[nodiscard]] std::optional<feeder::Phase> phase() const;
+    /// Nothing is left to be sent in this run.
+    [[nodiscard]] bool all_sent() const;
+
+    void request_stop();
+    void pause(Duration duration);
+    void slow_disk(Duration duration);
+    /// The process dies; `in_steps` effects later, or now.
+    void kill(std::uint64_t in_steps = 0);
+    void lose_power();
+
+    // Events
+    void receive(std::uint64_t connection, std::string_view bytes);
+    void link_closed(std::uint64_t connection);
+    void connected(std::uint64_t generation, std::uint64_t connection);
+    void write_step(std::uint64_t generation);
+    void store_done(std::uint64_t generation);
+    void store_wake(std::uint64_t generation);
+    void resume(std::uint64_t generation);
+    void wake();
+    /// When wake() is due; Instant::max() = not before something else happens.
+    [[nodiscard]] Instant wake_at() const;
+
+    /// The last word of the ledger, for the judge. Precondition: not running.
+    void check_spool();
+
+private:
+    struct Run;
+    void next_run();
+    void end_process(feeder::OutcomeCode code);
+    [[nodiscard]] bool open_spool();
+    void begin_run(const std::optional<daemon::OpenIssue>& open);
+    void run_over();
+    void die();
+
+    // What JobRun and TcpLink do
+    template <typename Fact>
+    void call(Fact&& fact);
+    void carry_out();
+    void on_effect(const session::Effect& effect);
+    void push_cumulative();
+    void begin_write();
+    void take_replies();
+    [[nodiscard]] bool is_current(std::uint64_t generation) const;
+    [[nodiscard]] bool paused() const { return context_.now < paused_until_; }
+
+    Context& context_;
+    Judge& judge_;
+    Wire& wire_;
+    Random random_;
+    std::optional<spool::Spool> spool_;
+    spool::JobId job_{};
+    RecordRange wanted_;
+    std::unique_ptr<Run> run_;
+    session::Effects effects_;
+    Ending ending_;
+    cli::OperatorWord word_;
+    bool word_counts_ = false;
+    bool interrupted_ = false;
+    Instant paused_until_{};
+    std::uint64_t generation_ = 0;
+    std::optional<std::uint64_t> steps_to_live_;
+    std::int64_t wall_ns_ = 1'700'000'000'000'000'000;
+    std::string path_;
+};
+
+} // namespace linefeed::simulation

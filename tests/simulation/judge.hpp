@@ -1,0 +1,63 @@
+// The judge stands outside the core and looks only at what stuck to the products, at the ledger, and at what the operator was told.
+#pragma once
+
+#include "base/record_number.hpp"
+#include "context.hpp"
+#include "spool/ledger.hpp"
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace linefeed::simulation {
+
+class Judge {
+public:
+    explicit Judge(Context& context);
+
+    // The tape
+    void printed(RecordNumber number, std::string_view text);
+    void print_aborted(RecordNumber number);
+    void underrun(bool explained);
+    void buffer_overfull();
+    void numbers_out_of_order();
+
+    // The operator's decisions about records in doubt
+    void will_skip(RecordRange range);
+    void will_reprint(RecordRange range);
+    /// He takes the record, of which the last product carries a part, for printed.
+    void accepts_part(RecordNumber number);
+
+    /// Every record that the ledger calls printed is on a product, every record that it calls unused is on none.
+    void check_ledger(const spool::LedgerState& state);
+    /// The program said that everything is printed.
+    void check_finished(const spool::LedgerState& state);
+    /// All is over: no record is left out.
+    void check_complete();
+
+    /// The first violation ends the run.
+    void violation(std::string what);
+    [[nodiscard]] const std::optional<std::string>& violated() const { return violation_; }
+    /// The record on the last product of the job, and whether it is complete. 0 = none yet.
+    [[nodiscard]] RecordNumber last() const { return last_; }
+    [[nodiscard]] bool last_is_complete() const { return last_complete_; }
+
+private:
+    struct Product {
+        std::uint8_t complete = 0;
+        std::uint8_t aborted = 0;
+        std::uint8_t may_repeat = 0; ///< times the operator had it printed again
+        bool may_be_missing = false;
+    };
+    [[nodiscard]] Product* product(RecordNumber number);
+
+    Context& context_;
+    std::vector<Product> products_;
+    RecordNumber last_;
+    bool last_complete_ = true;
+    std::string expected_;
+    std::optional<std::string> violation_;
+};
+
+} // namespace linefeed::simulation

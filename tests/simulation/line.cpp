@@ -1,0 +1,182 @@
+#include "line.hpp"
+
+#include "protocol/printer_error.hpp"
+
+#include <algorithm>
+#include <string>
+
+namespace linefeed::simulation {
+
+using simulator::PrinterModel;
+
+namespace {
+
+simulator::PrinterSettings other_printer(simulator::PrinterSettings settings) {
+    settings.serial_number = "204812";
+    settings.total_prints += 1234567;
+    return settings;
+}
+
+} // namespace
+
+Line::Line(Context& context, Judge& judge, Wire& wire, Random random)
+    : context_(context)
+    , judge_(judge)
+    , wire_(wire)
+    , random_(random)
+    , printers_{std::make_unique<PrinterModel>(context.scenario.printer, context.now),
+                std::make_unique<PrinterModel>(other_printer(context.scenario.printer), context.now)}
+    , printer_(printers_[0].get()) {
+    if (context.scenario.bursts) {
+        context_.after(std::chrono::seconds{5}, EventKind::belt_changes);
+    }
+}
+
+void Line::receive(std::uint64_t connection, std::string_view bytes) {
+    auto found = std::find_if(clients_.begin(), clients_.end(), [&](const auto& it) { return it->connection == connection; });
+    if (found == clients_.end()) {
+        clients_.push_back(std::make_unique<Client>());
+        clients_.back()->connection = connection;
+        found = std::prev(clients_.end());
+    }
+    Client& client = **found;
+    while (true) {
+        const auto result = client.decoder.next(bytes);
+        if (const auto* frame = std::get_if<protocol::Frame>(&result)) {
+            printer_->receive({connection}, *frame, context_.now);
+        } else if (std::holds_alternative<std::monostate>(result)) {
+            break;
+        }
+    }
+    carry_out();
+}
+
+void Line::disconnected(std::uint64_t connection) {
+    printer_->disconnected({connection});
+    std::erase_if(clients_, [connection](const auto& client) { return client->connection == connection; });
+}
+
+const PrinterModel& Line::look() {
+    printer_->advance(context_.now);
+    carry_out();
+    return *printer_;
+}
+
+void Line::other_client(std::string_view frame) {
+    receive(other_client_id, std::string{frame} + '\r');
+}
+
+void Line::another_job(std::uint32_t first, std::uint32_t count) {
+    others_interfere_ = true;
+    other_client("^0!EQ");
+    other_client("^0!FF");
+    other_client("^0=CM" + std::to_string(first + count - 1));
+    for (std::uint32_t i = 0; i < count; ++i) {
+        other_client("^0=MR" + std::to_string(first + i) + "\tX" + std::to_string(i));
+    }
+    other_client("^0!GO");
+}
+
+void Line::exchange_printer() {
+    look();
+    printer_->press(protocol::Action::power_off, context_.now);
+    carry_out();
+    wire_.printer_closes(random_.chance(0.5));
+    clients_.clear();
+    at_address_ = 1 - at_address_;
+    printer_ = printers_[at_address_].get();
+    printer_->power_cycle(context_.now);
+    printer_->clear_effects();
+    carry_out();
+}
+
+void Line::carry_out() {
+    while (!printer_->effects().empty()) {
+        printer_->take_effects(effects_);
+        for (simulator::Effect& effect : effects_) {
+            carry_out(effect);
+        }
+    }
+    move_belt();
+}
+
+void Line::carry_out(simulator::Effect& effect) {
+    if (const auto* print = std::get_if<simulator::Printed>(&effect)) {
+        context_.trace.note(context_.now, "print", print->number.value());
+        judge_.printed(print->number, print->text);
+    } else if (auto* reply = std::get_if<simulator::Reply>(&effect)) {
+        if (reply->connection.value != other_client_id) {
+            context_.trace.say(context_.now, "printer says", reply->bytes);
+            wire_.to_host(reply->connection.value, reply->bytes);
+        }
+    } else if (const auto* aborted = std::get_if<simulator::PrintAborted>(&effect)) {
+        context_.trace.note(context_.now, "print broken off", aborted->number.value());
+        judge_.print_aborted(aborted->number);
+    } else if (std::holds_alternative<simulator::Underrun>(effect)) {
+        context_.trace.note(context_.now, "underrun");
+        judge_.underrun(underrun_is_explained());
+    } else if (const auto* error = std::get_if<simulator::ErrorRaised>(&effect)) {
+        const std::uint32_t code = error->error.code_without_bit_24();
+        context_.trace.note(context_.now, "error", code);
+        if (code == protocol::error_code::buffer_full && !others_interfere_) {
+            judge_.buffer_overfull();
+        }
+        if (code == protocol::error_code::number_wrong) {
+            judge_.numbers_out_of_order();
+        }
+    } else if (const auto* state = std::get_if<simulator::StateChanged>(&effect)) {
+        context_.trace.note(context_.now, "machine state", static_cast<std::uint64_t>(state->machine), state->cover_open ? 1 : 0);
+    } else if (std::holds_alternative<simulator::ConnectionsLost>(effect)) {
+        context_.trace.note(context_.now, "printer restarted");
+        wire_.printer_closes(random_.chance(0.5));
+        clients_.clear();
+    }
+}
+
+Duration Line::step() {
+    const Scenario& scenario = context_.scenario;
+    Duration step = scenario.period;
+    if (fast_) {
+        step /= 2;
+    }
+    if (scenario.period_jitter > Duration{0}) {
+        step += random_.between(Duration{0}, scenario.period_jitter * 2) - scenario.period_jitter;
+    }
+    return step;
+}
+
+void Line::move_belt() {
+    if (!printer_->printing()) {
+        if (product_due_ != Instant::max()) {
+            context_.counts.printing += context_.now - printing_since_;
+        }
+        product_due_ = Instant::max();
+    } else if (product_due_ == Instant::max()) {
+        constexpr Duration start_delay = std::chrono::milliseconds{20};
+        printing_since_ = context_.now;
+        product_due_ = std::max(context_.now + std::max(start_delay, context_.scenario.period), belt_stands_until_);
+    }
+}
+
+void Line::product() {
+    const auto outcome = printer_->print_go(context_.now);
+    product_due_ = std::max(context_.now + step(), belt_stands_until_);
+    carry_out();
+    if (outcome != simulator::PrintGoOutcome::printed) {
+        context_.trace.note(context_.now, "blank product");
+    }
+}
+
+void Line::change_belt() {
+    fast_ = !fast_;
+    context_.after(random_.spread(Duration{std::chrono::milliseconds{500}}, Duration{std::chrono::seconds{30}}), EventKind::belt_changes);
+}
+
+void Line::pause_belt(Duration duration) {
+    belt_stands_until_ = context_.now + duration;
+    if (product_due_ != Instant::max()) {
+        product_due_ = std::max(product_due_, belt_stands_until_);
+    }
+}
+
+} // namespace linefeed::simulation

@@ -1,0 +1,130 @@
+#include "scenario.hpp"
+
+#include "random.hpp"
+
+#include <algorithm>
+
+namespace linefeed::simulation {
+
+using namespace std::chrono_literals;
+
+std::string_view to_string(Fault fault) {
+    constexpr std::array<std::string_view, fault_kinds> names{
+        "operator stop",  "stop and go",  "panel start",     "stop by linefeed", "printer error",   "printer warning",
+        "cover opened",   "nozzle closed", "printer restart", "another job",      "another printer", "second client",
+        "process kill",   "kill in step", "host power loss", "both power loss",  "link cut",        "link silent",
+        "link stall",     "host pause",   "slow disk",       "disk full",        "belt pause"};
+    return names[static_cast<std::size_t>(fault)];
+}
+
+bool Scenario::supply_is_sufficient() const {
+    const double per_second = 1e9 / static_cast<double>((period - period_jitter).count()) * (bursts ? 2.0 : 1.0);
+    const auto seconds = [](Duration d) { return std::chrono::duration<double>(d).count(); };
+    const double depth = printer.depth;
+    // Split bytes and slow writes take up to four latencies each; the feeder polls every depth / 8000 s, 1 ms at least.
+    const double parts = (split > 0 ? 4.0 : 1.0) + (slow_write > 0 ? 4.0 : 0.0);
+    const double supply = 2 * seconds(latency.high) * parts + std::max(depth / 8000.0, 0.001) + seconds(printer.margin) + 0.002;
+    const double ledger = 2 * seconds(commit.high) + seconds(gather) + 0.002;
+    return damage == 0 && per_second * supply < depth / 2 - 1 && per_second * ledger < depth;
+}
+
+void Scenario::text_of(std::uint32_t number, std::string& out) const {
+    static constexpr char digits[] = "0123456789ABCDEF";
+    std::uint32_t mixed = (number ^ static_cast<std::uint32_t>(seed)) * 2654435761U;
+    mixed ^= mixed >> 15U;
+    char text[19];
+    std::size_t size = 0;
+    text[size++] = 'R';
+    for (unsigned shift = 28; size < 9; shift -= 4) {
+        text[size++] = digits[(mixed >> shift) & 0xFU];
+    }
+    if (two_fields) {
+        text[size++] = '\t';
+        text[size++] = '\\'; // has to be escaped on its way
+        for (unsigned shift = 0; shift < 28; shift += 4) {
+            text[size++] = digits[(number >> shift) & 0xFU];
+        }
+    }
+    out.assign(text, size);
+}
+
+namespace {
+
+void draw_faults(Scenario& scenario, Random random) {
+    scenario.faults = static_cast<std::uint32_t>(random.spread(1, 24));
+    for (std::uint32_t& weight : scenario.weights) {
+        weight = random.chance(0.35) ? static_cast<std::uint32_t>(random.spread(1, 32)) : 0;
+    }
+    if (std::all_of(scenario.weights.begin(), scenario.weights.end(), [](std::uint32_t w) { return w == 0; })) {
+        scenario.weights[random.below(fault_kinds)] = 1;
+    }
+    // Around the time that some records take, so that faults meet a printing line as well as one another.
+    const Duration typical = std::clamp<Duration>(scenario.period * static_cast<std::int64_t>(scenario.printer.depth), 20ms, 120s);
+    scenario.fault_gap = {1ms, typical * static_cast<std::int64_t>(random.spread(1, 8))};
+}
+
+void draw_printer(Scenario& scenario, Random random) {
+    constexpr std::uint32_t depths[]{3, 16, 256};
+    simulator::PrinterSettings& printer = scenario.printer;
+    printer.depth = depths[random.below(3)];
+    const Duration shortest = (scenario.period - scenario.period_jitter) / (scenario.bursts ? 2 : 1);
+    printer.print_duration = std::min<Duration>(random.spread(Duration{200us}, Duration{200ms}), shortest * 6 / 10);
+    printer.nozzle_opening_time = 30s;
+    printer.total_prints = static_cast<std::uint32_t>(random.chance(0.05) ? 0xFFFFFF00U + random.below(256) : random.below(1000000));
+    printer.length_on = random.chance(0.1);
+    printer.echo_on = random.chance(0.1);
+    printer.block_length = random.chance(0.05) ? static_cast<std::uint32_t>(random.between(1, 256)) : 0;
+    simulator::Habits& habits = printer.habits;
+    habits.ignore_stop_at = random.chance(0.12);
+    habits.stop_at_only_while_printing = random.chance(0.12);
+    habits.stale_mail_status = random.chance(0.2);
+    habits.sixth_value = random.chance(0.3);
+    habits.five_value_status = random.chance(0.2);
+    habits.error_bit_24 = random.chance(0.15);
+    habits.abort_print_on_stop = random.chance(0.25);
+    habits.standby_silent = random.chance(0.2);
+    habits.line_end = static_cast<simulator::LineEnd>(random.below(3));
+}
+
+} // namespace
+
+Scenario draw_scenario(std::uint64_t seed, Profile profile) {
+    Scenario scenario;
+    scenario.seed = seed;
+    if (profile == Profile::line) {
+        scenario.records = 200'000;
+        scenario.period = 1ms;
+        scenario.printer.print_duration = 200us;
+        scenario.gather = 40ms;
+        scenario.latency = {100us, 100us};
+        scenario.commit = {1ms, 1ms};
+        return scenario;
+    }
+    Random random = Random{seed}.fork(1);
+    const bool faulty = random.chance(0.9);
+    const std::uint64_t rate = random.spread(1, 1000);
+    scenario.period = std::max<Duration>(Duration{1s} / static_cast<std::int64_t>(rate), 1ms);
+    scenario.period_jitter = random.chance(0.3) ? scenario.period / 5 : Duration{0};
+    scenario.bursts = scenario.period >= 2500us && random.chance(0.3);
+    scenario.records = static_cast<std::uint32_t>(faulty ? random.spread(8, 2000) : random.spread(500, 20000));
+    scenario.base = random.chance(0.2) ? static_cast<std::uint32_t>(random.spread(1, 1U << 31U)) : 0;
+    scenario.page_records = static_cast<std::uint32_t>(faulty ? random.spread(1, 512) : 256);
+    scenario.two_fields = random.chance(0.15);
+    const Duration typical_latency = random.spread(Duration{50us}, Duration{60ms});
+    scenario.latency = {typical_latency, random.chance(0.5) ? typical_latency * 3 : typical_latency};
+    scenario.split = random.chance(0.4) ? 0.2 : 0;
+    scenario.slow_write = random.chance(0.25) ? 0.2 : 0;
+    const Duration typical_commit = random.spread(Duration{100us}, Duration{50ms});
+    scenario.commit = {typical_commit, typical_commit * 3};
+    scenario.gather = random.chance(0.5) ? 10ms : 40ms;
+    scenario.open_nozzle = random.chance(0.5);
+    draw_printer(scenario, Random{seed}.fork(2));
+    scenario.skips_percent = random.chance(0.2) ? 30 : 0;
+    scenario.reprints_percent = random.chance(0.2) ? 30 : 0;
+    if (faulty) {
+        draw_faults(scenario, Random{seed}.fork(3));
+    }
+    return scenario;
+}
+
+} // namespace linefeed::simulation

@@ -1,0 +1,95 @@
+// What one seed means: the job, the printer, the line, the network, the disk, and which faults come how often. Swarm testing: each seed
+// switches most faults off and draws the weights of the rest, so that rare combinations come up.
+#pragma once
+
+#include "base/time.hpp"
+#include "simulator/printer_settings.hpp"
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace linefeed::simulation {
+
+/// What can go wrong.
+enum class Fault : std::uint8_t {
+    operator_stop,    ///< print-ready is switched off at the panel
+    stop_and_go,      ///< off, and on again at once
+    panel_start,      ///< somebody presses GO while linefeed does not print
+    stop_by_linefeed, ///< Ctrl-C
+    printer_error,
+    printer_warning,
+    cover_opened,
+    nozzle_closed,
+    printer_restart,  ///< power off and on: FIFO, `=CM`, number lost, counter kept
+    another_job,      ///< another host prints a job on it while linefeed is away
+    another_printer,  ///< a different one stands at the address
+    second_client,    ///< asks and switches modes at the same time
+    process_kill,
+    kill_in_step,     ///< between two effects of one step
+    host_power_loss,
+    both_power_loss,
+    link_cut,         ///< announced: reset
+    link_silent,      ///< no byte comes through any more
+    link_stall,       ///< bytes come late, but come
+    host_pause,       ///< the process gets no time
+    slow_disk,
+    disk_full,
+    belt_pause,
+};
+inline constexpr std::size_t fault_kinds = static_cast<std::size_t>(Fault::belt_pause) + 1;
+[[nodiscard]] std::string_view to_string(Fault fault);
+
+/// A stretch of time to draw from.
+struct Span {
+    Duration low{1};
+    Duration high{1};
+};
+
+struct Scenario {
+    std::uint64_t seed = 0;
+    // The job
+    std::uint32_t base = 0;
+    std::uint32_t records = 100;
+    std::uint32_t page_records = 256;
+    bool two_fields = false;
+    // The line
+    Duration period = std::chrono::milliseconds{10};
+    Duration period_jitter{0};
+    bool bursts = false;
+    simulator::PrinterSettings printer;
+    // The network
+    Span latency{std::chrono::microseconds{100}, std::chrono::microseconds{200}};
+    double split = 0; ///< probability that a piece of bytes arrives in several parts
+    double slow_write = 0;
+    double damage = 0; ///< probability that a piece of bytes arrives damaged: for lines without CRC nothing else helps
+    // The disk
+    Span commit{std::chrono::microseconds{100}, std::chrono::milliseconds{5}};
+    Duration gather = std::chrono::milliseconds{10};
+    // Faults
+    std::array<std::uint32_t, fault_kinds> weights{};
+    std::uint32_t faults = 0; ///< so many, then everything is repaired
+    Span fault_gap{std::chrono::milliseconds{1}, std::chrono::seconds{10}};
+    // The operator
+    bool open_nozzle = false;
+    std::uint32_t skips_percent = 0;    ///< of his decisions about records in doubt
+    std::uint32_t reprints_percent = 0;
+
+    /// Network, disk and the beat of the feeder leave no excuse for an underrun.
+    [[nodiscard]] bool supply_is_sufficient() const;
+    /// What stands on the product of a record: the fields joined by TAB.
+    void text_of(std::uint32_t number, std::string& out) const;
+    [[nodiscard]] std::uint32_t first() const { return base + 1; }
+    [[nodiscard]] std::uint32_t last() const { return base + records; }
+};
+
+/// Which family of scenarios.
+enum class Profile {
+    mixed, ///< everything
+    line,  ///< 1 000 prints/s without faults: measures the speed of the simulation
+};
+
+[[nodiscard]] Scenario draw_scenario(std::uint64_t seed, Profile profile);
+
+} // namespace linefeed::simulation

@@ -1,0 +1,120 @@
+#include "wire.hpp"
+
+#include "base/assert.hpp"
+
+#include <algorithm>
+
+namespace linefeed::simulation {
+
+namespace {
+constexpr std::size_t connections_kept = 16; ///< older ones have nothing in flight any more
+} // namespace
+
+Wire::Wire(Context& context, Random random)
+    : context_(context)
+    , random_(random) {}
+
+std::uint64_t Wire::open() {
+    if (connections_.size() == connections_kept) {
+        connections_.erase(connections_.begin());
+    }
+    connections_.push_back({++last_id_, true, true, context_.now, context_.now});
+    return last_id_;
+}
+
+Wire::Connection* Wire::find(std::uint64_t id) {
+    const auto found =
+        std::find_if(connections_.rbegin(), connections_.rend(), [id](const Connection& connection) { return connection.id == id; });
+    return found == connections_.rend() ? nullptr : &*found;
+}
+
+void Wire::send(std::uint64_t connection, bool to_printer, std::string_view bytes) {
+    Connection* it = find(connection);
+    if (it == nullptr) {
+        return;
+    }
+    while (!bytes.empty()) {
+        const bool splits = context_.scenario.split > 0 && bytes.size() > 1 && random_.chance(context_.scenario.split);
+        const std::size_t size = splits ? random_.between(1, bytes.size() - 1) : bytes.size();
+        put(*it, to_printer, bytes.substr(0, size));
+        bytes.remove_prefix(size);
+    }
+}
+
+void Wire::put(Connection& connection, bool to_printer, std::string_view bytes) {
+    Instant& last = to_printer ? connection.last_to_printer : connection.last_to_host;
+    last = std::max({last, context_.now + latency(), stalled_until_});
+    std::uint64_t index = chunks_.size();
+    if (free_chunks_.empty()) {
+        chunks_.emplace_back();
+    } else {
+        index = free_chunks_.back();
+        free_chunks_.pop_back();
+    }
+    Chunk& chunk = chunks_[index];
+    chunk.connection = connection.id;
+    chunk.to_printer = to_printer;
+    chunk.bytes.assign(bytes);
+    if (context_.scenario.damage > 0 && random_.chance(context_.scenario.damage)) {
+        char& byte = chunk.bytes[random_.below(chunk.bytes.size())];
+        if (random_.chance(0.5)) {
+            byte = static_cast<char>(random_.below(256));
+        } else {
+            chunk.bytes.erase(static_cast<std::size_t>(&byte - chunk.bytes.data()), 1);
+        }
+    }
+    context_.queue.put(last, EventKind::chunk, index);
+}
+
+void Wire::deliver(std::uint64_t index, WireEnds& ends) {
+    std::string bytes;
+    bytes.swap(chunks_[index].bytes);
+    const Connection* connection = find(chunks_[index].connection);
+    const bool to_printer = chunks_[index].to_printer;
+    if (connection != nullptr && !bytes.empty() && (to_printer ? connection->printer_open : connection->host_open)) {
+        if (to_printer) {
+            ends.printer_receives(connection->id, bytes);
+        } else {
+            ends.host_receives(connection->id, bytes);
+        }
+    }
+    chunks_[index].bytes.swap(bytes); // keeps its memory
+    free_chunks_.push_back(index);
+}
+
+void Wire::host_closes(std::uint64_t connection) {
+    if (Connection* it = find(connection); it != nullptr && it->host_open) {
+        it->host_open = false;
+        context_.queue.put(std::max(it->last_to_printer, context_.now + latency()), EventKind::peer_closed, connection);
+    }
+}
+
+void Wire::printer_closes(bool announced) {
+    for (Connection& connection : connections_) {
+        if (connection.printer_open) {
+            connection.printer_open = false;
+            if (announced && connection.host_open) {
+                context_.queue.put(std::max(connection.last_to_host, context_.now + latency()), EventKind::link_closed, connection.id);
+            }
+        }
+    }
+}
+
+void Wire::cut(bool announced) {
+    for (Connection& connection : connections_) {
+        if (announced && connection.host_open) {
+            context_.after(latency(), EventKind::link_closed, connection.id);
+        }
+        if (announced && connection.printer_open) {
+            context_.after(latency(), EventKind::peer_closed, connection.id);
+        }
+        connection.printer_open = false;
+        connection.host_open = false;
+    }
+}
+
+void Wire::stall(Instant until) {
+    stalled_until_ = std::max(stalled_until_, until);
+}
+
+} // namespace linefeed::simulation
