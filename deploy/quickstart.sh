@@ -52,7 +52,8 @@ sqlite3 -bail "$work/names.db" < deploy/sample_names.sql > /dev/null || fail "th
 sqlite3 "$work/names.db" "SELECT 'record ' || id || ': ' || name FROM names WHERE id IN (1, 22117, 22118, 22119, 99999, 100000)"
 
 step "4. a printer with a conveyor, $rate products per second"
-"$bin/linefeed-sim" --listen 127.0.0.1:0 --rate "$rate" --tape "$work/tape.csv" > "$work/simulator.out" 2>&1 &
+# In a session of its own, so that Ctrl-C stops linefeed, and linefeed the printer.
+setsid "$bin/linefeed-sim" --listen 127.0.0.1:0 --rate "$rate" --tape "$work/tape.csv" > "$work/simulator.out" 2>&1 &
 simulator=$!
 port=
 for _ in {1..100}; do
@@ -69,7 +70,6 @@ command=("$bin/linefeed" print "$work/names.db" --table names --columns name --f
          --printer "tcp://127.0.0.1:$port" --spool "$work/spool.db")
 printf '$ linefeed print names.db --table names --columns name --from %s --printer tcp://127.0.0.1:%s\n' "$first" "$port"
 started=$(date +%s)
-code=4
 # A machine under heavy load may let the line run empty: the printer stops, and the same command goes on behind the last print.
 for attempt in 1 2 3 4 5; do
     code=0

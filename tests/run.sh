@@ -89,6 +89,7 @@ stage "build" build_release || finish
 [[ $long -eq 0 ]] || export LINEFEED_LONG_TESTS=1
 run_tests "unit and architecture" -L unit --parallel "$cores"
 run_tests "fuzz corpora" -L fuzz --parallel "$cores"
+run_tests "simulation" -L simulation --parallel "$cores"
 run_tests "integration" -L integration
 stage "format" tests/lint.sh format
 stage "tidy" tests/lint.sh tidy

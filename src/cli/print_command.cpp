@@ -242,7 +242,7 @@ Result<bool> PrintCommand::ask_operator(spool::Spool& spool, const spool::Job& j
     if (options_.json || ::isatty(STDIN_FILENO) == 0 || ::isatty(STDERR_FILENO) == 0) {
         return false;
     }
-    const auto report = make_report(spool, job, job.records, {feeder::OutcomeCode::records_in_doubt, {}, {}, false}, {},
+    const auto report = make_report(spool, job, job.records, {.code = feeder::OutcomeCode::records_in_doubt}, {},
                                     options_.profile.escapes);
     if (!report) {
         return report.error();
@@ -277,7 +277,7 @@ Result<bool> PrintCommand::settle_doubt(spool::Spool& spool, const spool::Job& j
 /// One run after the other until nothing is left to print, or something stands in the way.
 Result<feeder::Outcome> PrintCommand::print_runs(spool::Spool& spool, const spool::Job& job, RecordRange wanted,
                                                  const daemon::JobRunSettings& settings) {
-    feeder::Outcome outcome{feeder::OutcomeCode::nothing_to_print, {}, {}, false};
+    feeder::Outcome outcome{.code = feeder::OutcomeCode::nothing_to_print};
     while (!interrupted_) {
         auto open = daemon::find_open_issue(spool, job.id);
         const auto state = spool.ledger_state(job.id);

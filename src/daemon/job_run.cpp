@@ -94,7 +94,7 @@ void JobRun::push_cumulative() {
 
 void JobRun::on_unreachable(const std::string& reason) {
     detail_ = link::to_string(settings_.printer) + ": " + reason;
-    end({{feeder::OutcomeCode::unreachable, {}, {}, false}});
+    end({{.code = feeder::OutcomeCode::unreachable}});
 }
 
 void JobRun::end(const feeder::End& end) {

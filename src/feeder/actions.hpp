@@ -83,7 +83,7 @@ enum class NoticeCode {
 };
 struct Notice {
     NoticeCode code = NoticeCode::printing_started;
-    protocol::PrinterError error;
+    protocol::PrinterError error{};
     friend bool operator==(const Notice&, const Notice&) = default;
 };
 /// The run is over; nothing follows.

@@ -201,9 +201,9 @@ private:
     std::optional<Instant> all_printed_at_;
     bool marker_sent_ = false;
     bool any_sent_ = false;
-    bool earlier_settled_ = false;    ///< Settle of the earlier run is out
-    bool fifo_is_ours_ = false;            ///< it was seen empty after `!FF`, or is taken over: it holds nothing but this run
-    bool settled_ = false; ///< Settle of this run is out
+    bool earlier_settled_ = false; ///< Settle of the earlier run is out
+    bool fifo_is_ours_ = false;    ///< it was seen empty after `!FF`, or is taken over: it holds nothing but this run
+    bool settled_ = false;         ///< Settle of this run is out
     std::int32_t error_noticed_ = 0;
     RecordNumber confirmed_through_;
     std::optional<OutcomeCode> cause_;

@@ -48,7 +48,8 @@ void Feeder::located(Instant now, Actions& out) {
         }
         return;
     }
-    // What lies in the FIFO could still be printed by hand, before it may be flushed: its fate is settled at the last moment.
+    // What lies in the FIFO could still be printed by hand, before it may be flushed: its fate is settled at the last
+    // moment.
     if (mail_.entries == 0 && !settle_earlier(now, out)) {
         return;
     }

@@ -155,8 +155,10 @@ void Feeder::judge(Instant now, Actions& out) {
         enter(Phase::finishing, now, settings_.finish_timeout);
         out.push_back(Command{protocol::Action::acknowledge_errors});
         ask(Parameter::RS, now, out);
-    } else if (mail_.entries > 0) {
-        enter(Phase::clearing, now, settings_.stop_timeout); // sent and never started: nobody may print them unseen
+    } else if (any_sent_ || mail_.entries > 0) {
+        // Sent and perhaps never started: nobody may print them unseen. The entries do not tell, a single record counts
+        // as none (protocol, section 5); so the FIFO is flushed whatever they say.
+        enter(Phase::clearing, now, settings_.stop_timeout);
     } else {
         end(*cause_, out);
     }

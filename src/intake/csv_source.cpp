@@ -156,7 +156,7 @@ Result<bool> CsvSource::next(Row& row) {
         return true;
     }
     if (current_is_used_) {
-        const auto advanced = advance();
+        auto advanced = advance();
         if (!advanced || !*advanced) {
             return advanced;
         }

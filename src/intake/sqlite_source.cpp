@@ -133,6 +133,7 @@ Result<void> SqliteSource::start_query(const std::string& query, const std::vect
         return bad_query(file_, "it has parameters without a value");
     }
     std::vector<std::string> all_names;
+    all_names.reserve(static_cast<std::size_t>(sqlite3_column_count(statement)));
     for (int i = 0; i < sqlite3_column_count(statement); ++i) {
         all_names.emplace_back(sqlite3_column_name(statement, i));
     }

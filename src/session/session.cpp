@@ -1,9 +1,7 @@
+// Where the facts arrive: bytes, completions, the ledger's answers, and time.
 #include "session/session.hpp"
 
-#include "protocol/frame_encoder.hpp"
-
 #include <algorithm>
-#include <string>
 
 namespace linefeed::session {
 
@@ -67,49 +65,49 @@ void Session::take_frame(const protocol::Frame& frame, Instant now, Actions& act
         ++statistics_.frames_unexpected;
         return;
     }
-    struct Visitor {
-        Session& session;
-        Instant now;
-        Actions& actions;
-        bool expected = true;
+    const protocol::Message message = protocol::parse_message(frame, settings_.escapes);
+    if (const auto* malformed = std::get_if<protocol::MalformedMessage>(&message)) {
+        statistics_.bytes_damaged += malformed->payload.size();
+    } else if (!take_answer(message, now, actions)) {
+        ++statistics_.frames_unexpected;
+    }
+}
 
-        void operator()(const protocol::MachineStatus& status) {
-            if ((expected = session.answered(Parameter::RS))) {
-                session.feeder_.on_machine_status(status, now, actions);
-            }
+/// False if nobody asked.
+bool Session::take_answer(const protocol::Message& message, Instant now, Actions& actions) {
+    if (const auto* mail = std::get_if<protocol::MailStatus>(&message)) {
+        const bool asked = answered(Parameter::SM);
+        if (asked) {
+            feeder_.on_mail_status(*mail, now, actions);
         }
-        void operator()(const protocol::MailStatus& status) {
-            if ((expected = session.answered(Parameter::SM))) {
-                session.feeder_.on_mail_status(status, now, actions);
-            }
+        return asked;
+    }
+    if (const auto* machine = std::get_if<protocol::MachineStatus>(&message)) {
+        const bool asked = answered(Parameter::RS);
+        if (asked) {
+            feeder_.on_machine_status(*machine, now, actions);
         }
-        void operator()(const protocol::Counters& counters) {
-            if ((expected = session.answered(Parameter::CC))) {
-                session.feeder_.on_counters(counters, now, actions);
-            }
+        return asked;
+    }
+    if (const auto* counters = std::get_if<protocol::Counters>(&message)) {
+        const bool asked = answered(Parameter::CC);
+        if (asked) {
+            feeder_.on_counters(*counters, now, actions);
         }
-        void operator()(const protocol::VersionInfo& version) {
-            if ((expected = session.answered(Parameter::VS))) {
-                session.feeder_.on_version(version, now, actions);
-            }
+        return asked;
+    }
+    if (const auto* version = std::get_if<protocol::VersionInfo>(&message)) {
+        const bool asked = answered(Parameter::VS);
+        if (asked) {
+            feeder_.on_version(*version, now, actions);
         }
-        void operator()(const protocol::JobName& job) {
-            if ((expected = session.answered(Parameter::JL))) {
-                session.feeder_.on_job_name(job, now, actions);
-            }
-        }
-        void operator()(const protocol::MalformedMessage& message) {
-            session.statistics_.bytes_damaged += message.payload.size();
-        }
-        void operator()(const protocol::UnknownMessage&) { expected = false; }
-        void operator()(const protocol::ActionMessage&) { expected = false; }
-        void operator()(const protocol::InquiryMessage&) { expected = false; }
-        void operator()(const protocol::StopAt&) { expected = false; }
-        void operator()(const protocol::MailRecord&) { expected = false; }
-    };
-    Visitor visitor{*this, now, actions};
-    std::visit(visitor, protocol::parse_message(frame, settings_.escapes));
-    statistics_.frames_unexpected += visitor.expected ? 0 : 1;
+        return asked;
+    }
+    const bool asked = answered(Parameter::JL);
+    if (asked) {
+        feeder_.on_job_name(std::get<protocol::JobName>(message), now, actions);
+    }
+    return asked;
 }
 
 bool Session::answered(Parameter what) {
@@ -241,108 +239,6 @@ std::optional<Instant> Session::next_wake() const {
     const auto deadline = first_deadline();
     const auto wake = feeder_.next_wake();
     return deadline && wake ? std::min(deadline, wake) : (deadline ? deadline : wake);
-}
-
-namespace {
-
-/// A record of blanks. An empty text would not do: the printer shows the job's placeholder for it (Annex B, "zero
-/// string").
-void append_end_marker(std::string& out, RecordNumber number, std::size_t fields) {
-    std::string payload = "MR" + std::to_string(number.value());
-    for (std::size_t i = 0; i < fields; ++i) {
-        payload += "\t ";
-    }
-    protocol::append_frame(out, protocol::Group::parameter, payload);
-}
-
-} // namespace
-
-void Session::carry_out(const Actions& actions, Instant now, Effects& out) {
-    for (const feeder::Action& action : actions) {
-        carry_out(action, now, out);
-    }
-    flush(out);
-    finish_if_drained(out);
-}
-
-void Session::carry_out(const feeder::Action& action, Instant now, Effects& out) {
-    struct Visitor {
-        Session& session;
-        Instant now;
-        Effects& out;
-
-        void operator()(std::monostate) const {}
-        void operator()(const feeder::Inquire& inquire) const {
-            session.inquiries_.push_back({inquire.what, now + session.settings_.reply_timeout});
-            protocol::append_inquiry(session.outbox_.command_text(), inquire.what);
-            session.outbox_.staged_command();
-        }
-        void operator()(const feeder::Command& command) const {
-            protocol::append_action(session.outbox_.command_text(), command.what);
-            session.outbox_.staged_command();
-        }
-        void operator()(const feeder::SetStopAt& stop) const {
-            protocol::append_message(session.outbox_.command_text(), protocol::StopAt{stop.number});
-            session.outbox_.staged_command();
-        }
-        void operator()(const feeder::SendRecords& send) const { session.pages_.stage(send.range, session.outbox_); }
-        void operator()(const feeder::SendEndMarker& marker) const {
-            append_end_marker(session.outbox_.command_text(), marker.number, session.settings_.record_fields);
-            session.outbox_.staged_command();
-        }
-        void operator()(const feeder::Settle& settle) const { out.push_back(settle); }
-        void operator()(const feeder::BeginRun& begin) const { out.push_back(begin); }
-        void operator()(const feeder::AdoptRun& adopt) const { out.push_back(adopt); }
-        void operator()(const feeder::AskIntent& intent) const { out.push_back(intent); }
-        void operator()(const feeder::ConfirmPrinted& confirm) const { out.push_back(confirm); }
-        void operator()(const feeder::Notice& notice) const { out.push_back(notice); }
-        void operator()(const feeder::End& end) const {
-            session.end_ = end;
-            session.farewell_deadline_ = now + session.settings_.farewell_timeout;
-        }
-    };
-    if (!connected_ && !std::holds_alternative<feeder::End>(action)) {
-        const bool for_printer =
-            std::holds_alternative<feeder::Inquire>(action) || std::holds_alternative<feeder::Command>(action) ||
-            std::holds_alternative<feeder::SetStopAt>(action) || std::holds_alternative<feeder::SendRecords>(action) ||
-            std::holds_alternative<feeder::SendEndMarker>(action);
-        if (for_printer) {
-            return; // there is nobody to hear it
-        }
-    }
-    std::visit(Visitor{*this, now, out}, action);
-}
-
-void Session::flush(Effects& out) {
-    if (connected_ && outbox_.begin_write()) {
-        out.push_back(Write{});
-    }
-}
-
-void Session::finish_if_drained(Effects& out) {
-    if (!end_ || closed_ || !outbox_.idle()) {
-        return;
-    }
-    closed_ = true;
-    connected_ = false;
-    release_pages(out);
-    out.push_back(*end_);
-    out.push_back(CloseLink{});
-}
-
-void Session::release_pages(Effects& out) {
-    if (closed_) {
-        while (const RecordPage* page = pages_.take_any()) {
-            out.push_back(ReleasePage{page});
-        }
-        return;
-    }
-    if (!outbox_.idle() || feeder_.refill().range().empty()) {
-        return; // staged slices point into the pages
-    }
-    while (const RecordPage* page = pages_.take_done(feeder_.refill().sent_through())) {
-        out.push_back(ReleasePage{page});
-    }
 }
 
 } // namespace linefeed::session

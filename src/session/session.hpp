@@ -95,6 +95,7 @@ private:
     static constexpr std::size_t max_inquiries = 16;
 
     void take_frame(const protocol::Frame& frame, Instant now, feeder::Actions& actions);
+    [[nodiscard]] bool take_answer(const protocol::Message& message, Instant now, feeder::Actions& actions);
     /// Removes the oldest inquiry for `what`; false if there was none.
     [[nodiscard]] bool answered(protocol::Parameter what);
     void carry_out(const feeder::Actions& actions, Instant now, Effects& out);

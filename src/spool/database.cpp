@@ -132,17 +132,17 @@ void Database::Finalizer::operator()(sqlite3_stmt* handle) const {
 }
 
 Result<std::unique_ptr<Database>> Database::open(const std::string& path, const std::string& vfs, Access access) {
-    sqlite3* handle = nullptr;
+    // First, so that the handle has an owner whatever happens: SQLite gives one even when it fails.
+    std::unique_ptr<Database> database{new Database{path}};
     // A reader of a write-ahead log has to write its shared index, so it opens for writing too: PRAGMA query_only.
     const int create = access == Access::create ? SQLITE_OPEN_CREATE : 0;
     const int flags = SQLITE_OPEN_READWRITE | create | SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_EXRESCODE;
     // "./" keeps a relative path from being read as a URI or as ":memory:".
     const std::string file = path.starts_with('/') ? path : "./" + path;
-    const int code = sqlite3_open_v2(file.c_str(), &handle, flags, vfs.empty() ? nullptr : vfs.c_str());
-    if (handle == nullptr) {
+    const int code = sqlite3_open_v2(file.c_str(), &database->handle_, flags, vfs.empty() ? nullptr : vfs.c_str());
+    if (database->handle_ == nullptr) {
         return Failure{FailureKind::storage, path + ": " + describe_sqlite_error(SQLITE_NOMEM)};
     }
-    std::unique_ptr<Database> database{new Database{path, handle}};
     if (code != SQLITE_OK) {
         return database->failure(code);
     }
@@ -193,17 +193,24 @@ Result<std::string> Database::query_text(const char* sql) {
     if (prepared != SQLITE_OK) {
         return failure(prepared);
     }
-    const int code = sqlite3_step(handle);
+    std::string first;
+    int code = sqlite3_step(handle);
     if (code == SQLITE_ROW) {
         const void* text = sqlite3_column_blob(handle, 0);
         const int size = sqlite3_column_bytes(handle, 0);
-        return text == nullptr ? std::string{}
-                               : std::string{static_cast<const char*>(text), static_cast<std::size_t>(size)};
+        if (text != nullptr) {
+            first.assign(static_cast<const char*>(text), static_cast<std::size_t>(size));
+        }
     }
-    if (code == SQLITE_DONE) {
-        return std::string{};
+    // To the end: what a pragma changes is committed behind its last row, and only then can fail (journal_mode = WAL
+    // would leave a database without WAL).
+    while (code == SQLITE_ROW) {
+        code = sqlite3_step(handle);
     }
-    return failure(code);
+    if (code != SQLITE_DONE) {
+        return failure(code);
+    }
+    return first;
 }
 
 Result<std::int64_t> Database::query_number(const char* sql) {
@@ -240,6 +247,10 @@ void Database::disable_checkpoint_on_close() {
     sqlite3_db_config(handle_, SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, 1, nullptr);
 }
 
+void Database::roll_back() noexcept {
+    sqlite3_exec(handle_, "ROLLBACK", nullptr, nullptr, nullptr);
+}
+
 bool Database::in_transaction() const {
     return sqlite3_get_autocommit(handle_) == 0;
 }
@@ -254,7 +265,7 @@ Result<Transaction> Transaction::begin(Database& database) {
 Transaction::~Transaction() {
     // A failed statement may have rolled back already; a failed rollback leaves nothing that could be done about it.
     if (database_ != nullptr && database_->in_transaction()) {
-        static_cast<void>(database_->execute("ROLLBACK"));
+        database_->roll_back();
     }
 }
 

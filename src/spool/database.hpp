@@ -94,6 +94,9 @@ public:
     /// Leaves the WAL alone when the connection is closed: after an error, nothing more is written.
     void disable_checkpoint_on_close();
 
+    /// Ends the transaction. Makes no failure of it: that may need memory, and the cause has been reported.
+    void roll_back() noexcept;
+
     /// The failure for a result code, with the file and SQLite's own words.
     [[nodiscard]] Failure failure(int code) const;
     /// The last result code that was turned into a failure; decides what can be trusted afterwards.
@@ -102,16 +105,15 @@ public:
 
 private:
     friend class Statement;
-    Database(std::string path, sqlite3* handle)
-        : path_(std::move(path))
-        , handle_(handle) {}
+    explicit Database(std::string path)
+        : path_(std::move(path)) {}
 
     struct Finalizer {
         void operator()(sqlite3_stmt* handle) const;
     };
 
     std::string path_;
-    sqlite3* handle_;
+    sqlite3* handle_ = nullptr;
     mutable int last_error_ = 0;
     std::unordered_map<const void*, std::unique_ptr<sqlite3_stmt, Finalizer>> statements_; ///< by address of their SQL
 };

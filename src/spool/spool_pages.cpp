@@ -2,6 +2,8 @@
 #include "spool/checksum.hpp"
 #include "spool/spool_state.hpp"
 
+#include <new>
+
 namespace linefeed::spool {
 
 namespace {
@@ -132,11 +134,15 @@ JobImport& JobImport::operator=(JobImport&& other) noexcept {
 }
 
 JobImport::~JobImport() {
-    if (state_ != nullptr && !state_->committed && !state_->spool->broken) {
-        // What cannot be removed now is removed when the spool is opened again.
+    if (state_ == nullptr || state_->committed || state_->spool->broken) {
+        return;
+    }
+    // What cannot be removed now is removed when the spool is opened again.
+    try {
         if (auto removed = state_->spool->remove_job_in_steps(state_->job.id); !removed) {
             static_cast<void>(state_->spool->failed_write(removed.error()));
         }
+    } catch (const std::bad_alloc&) { // perhaps the very one that ended the import: a destructor lets none out
     }
 }
 

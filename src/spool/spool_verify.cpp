@@ -90,7 +90,7 @@ Result<std::int64_t> Spool::verify_ledger() {
                 return row.error();
             }
             if (std::string problem = verifier.check(*row); !problem.empty()) {
-                return Failure{FailureKind::storage, path + ": " + problem};
+                return Failure{FailureKind::storage, problem.insert(0, path + ": ")};
             }
         }
     }

@@ -1,5 +1,6 @@
 """Whatever interrupts a run, the same command again ends it: over all runs, every record is on the tape once, in order."""
 
+import csv
 import re
 import sqlite3
 import time
@@ -30,7 +31,7 @@ class Interruption(harness.TestCase):
         result = self.print(self.file, printer, *options)
         self.assert_code(0, result)
         self.assert_printed(self.records, *printers_before, getattr(printer, "simulator", printer))
-        self.assert_ledger_complete()
+        self.assert_ledger_complete(int(re.match(r"job (\d+): ", result.out).group(1)))
         return result
 
     def finish_by_last_product(self, restarted, *printers_before):
@@ -43,10 +44,14 @@ class Interruption(harness.TestCase):
         self.assertEqual([f"in doubt: {number}  {text}"], re.findall(r"^in doubt: .*$", result.out, re.MULTILINE))
         self.finish(restarted, *printers_before, options=("--last-printed", text))
 
-    def assert_ledger_complete(self):
-        """Every row of the ledger is chained, and every record of the job is printed and nothing else."""
-        result = harness.Job([str(harness.BIN / "linefeed"), "ledger", "1", "--verify", "--spool", str(self.spool)]).wait()
+    def assert_ledger_complete(self, job):
+        """Every row of the ledger is chained, every record of the job is printed, and the database is whole."""
+        result = harness.Job([str(harness.BIN / "linefeed"), "ledger", str(job), "--verify", "--spool", str(self.spool)]).wait()
         self.assert_code(0, result)
+        exported = harness.Job([str(harness.BIN / "linefeed"), "ledger", str(job), "--export", "csv", "--spool", str(self.spool)]).wait()
+        self.assert_code(0, exported)
+        rows_of_ledger = list(csv.DictReader(exported.out.splitlines()))
+        self.assertEqual([(str(number), "printed") for number, _ in self.records], [(r["number"], r["state"]) for r in rows_of_ledger])
         with sqlite3.connect(f"file:{self.spool}?mode=ro", uri=True) as spool:
             self.assertEqual([("ok",)], spool.execute("PRAGMA integrity_check").fetchall())
         spool.close()

@@ -78,6 +78,7 @@ private:
     void on_effect(const session::Effect& effect);
     void push_cumulative();
     void begin_write();
+    [[nodiscard]] bool continue_write();
     void take_replies();
     [[nodiscard]] bool is_current(std::uint64_t generation) const;
     [[nodiscard]] bool paused() const { return context_.now < paused_until_; }

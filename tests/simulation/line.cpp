@@ -78,7 +78,6 @@ void Line::another_job(std::uint32_t first, std::uint32_t count) {
 }
 
 void Line::exchange_printer() {
-    look();
     printer_->press(protocol::Action::power_off, context_.now);
     carry_out();
     wire_.printer_closes(random_.chance(0.5));

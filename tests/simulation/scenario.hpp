@@ -19,7 +19,6 @@ enum class Fault : std::uint8_t {
     panel_start,      ///< somebody presses GO while linefeed does not print
     stop_by_linefeed, ///< Ctrl-C
     printer_error,
-    printer_warning,
     cover_opened,
     nozzle_closed,
     printer_restart,  ///< power off and on: FIFO, `=CM`, number lost, counter kept
@@ -52,7 +51,7 @@ struct Scenario {
     // The job
     std::uint32_t base = 0;
     std::uint32_t records = 100;
-    std::uint32_t page_records = 256;
+    std::uint32_t page_records = 512;
     bool two_fields = false;
     // The line
     Duration period = std::chrono::milliseconds{10};

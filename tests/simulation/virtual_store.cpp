@@ -10,6 +10,7 @@ constexpr Duration checkpoint_interval = 5s;
 /// Whether the request needs the disk.
 bool is_durable(const daemon::StoreRequest& request) {
     return std::holds_alternative<feeder::Settle>(request) || std::holds_alternative<feeder::BeginRun>(request) ||
+           std::holds_alternative<feeder::AdoptRun>(request) ||
            std::holds_alternative<feeder::End>(request);
 }
 

@@ -10,8 +10,7 @@ namespace linefeed::test {
 class ScratchDirectory {
 public:
     explicit ScratchDirectory(const std::string& name)
-        : path_(std::filesystem::temp_directory_path() /
-                ("linefeed-" + name + '-' + std::to_string(::getpid()))) {
+        : path_(std::filesystem::temp_directory_path() / ("linefeed-" + name + '-' + std::to_string(::getpid()))) {
         std::filesystem::remove_all(path_);
         std::filesystem::create_directories(path_);
     }

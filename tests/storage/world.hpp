@@ -1,5 +1,5 @@
-// What a spool says when it is asked for everything: jobs with their content, and every row of the ledger. Storage tests
-// compare it with what had been acknowledged before the fault.
+// What a spool says when it is asked for everything: jobs with their content, and every row of the ledger. Storage
+// tests compare it with what had been acknowledged before the fault.
 #pragma once
 
 #include "spool/spool.hpp"

@@ -80,6 +80,8 @@ public:
     void set_ignores_syncs(bool ignores_syncs) { ignores_syncs_ = ignores_syncs; }
     [[nodiscard]] const CrashDisk& disk() const { return disk_; }
 
+    /// Whether handles of this generation still work: a new one begins with each kill().
+    [[nodiscard]] bool is_alive(std::uint64_t generation) const { return generation == generation_; }
     /// Calls of a kind since construction, failed ones included.
     [[nodiscard]] std::uint64_t calls(DiskCall kind) const { return calls_[static_cast<std::size_t>(kind)]; }
     /// Called before each call that changes files or makes changes durable (creating, write, truncate, sync, remove):
@@ -91,6 +93,7 @@ public:
 
 private:
     friend struct CrashVfsCalls;
+    friend struct CrashVfsLocks;
 
     /// Counts a call and says whether it fails: SQLITE_OK or the code.
     [[nodiscard]] int enter(DiskCall kind);

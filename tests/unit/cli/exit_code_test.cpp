@@ -10,7 +10,7 @@ using feeder::Outcome;
 using feeder::OutcomeCode;
 
 ExitCode code_of(OutcomeCode code, bool issued) {
-    return exit_code(Outcome{code, {}, {}, issued});
+    return exit_code(Outcome{code, protocol::MachineState::standby, {}, issued});
 }
 
 TEST(ExitCode, shouldHaveTheNumbersOfTheDesign) {
@@ -57,10 +57,11 @@ TEST(ExitCode, shouldAskForTheOperatorWhenRecordsAreInDoubt) {
 
 TEST(ExitCode, shouldBeResumableForEveryStopInBetween) {
     for (const OutcomeCode code :
-         {OutcomeCode::stop_requested, OutcomeCode::stopped_at_printer, OutcomeCode::printer_error, OutcomeCode::not_ready,
-          OutcomeCode::cover_open, OutcomeCode::busy, OutcomeCode::error_pending, OutcomeCode::fifo_not_flushed,
-          OutcomeCode::records_not_taken, OutcomeCode::did_not_start, OutcomeCode::did_not_stop, OutcomeCode::impossible_report,
-          OutcomeCode::printer_restarted, OutcomeCode::storage_failed}) {
+         {OutcomeCode::stop_requested, OutcomeCode::stopped_at_printer, OutcomeCode::printer_error,
+          OutcomeCode::not_ready, OutcomeCode::cover_open, OutcomeCode::busy, OutcomeCode::error_pending,
+          OutcomeCode::fifo_not_flushed, OutcomeCode::records_not_taken, OutcomeCode::did_not_start,
+          OutcomeCode::did_not_stop, OutcomeCode::impossible_report, OutcomeCode::printer_restarted,
+          OutcomeCode::storage_failed}) {
         EXPECT_EQ(code_of(code, true), ExitCode::stopped) << to_string(code);
     }
 }

@@ -28,13 +28,15 @@ RecordPage page_of(const std::vector<std::string>& fields) {
 
 TEST(RecordFields, shouldShowFieldsAsUtf8) {
     const RecordPage page = page_of({"M\xFCller\tBerlin", "\\^ \\\\"});
-    EXPECT_EQ(record_fields(page, RecordNumber{1}, EscapeMode::backslash), (std::vector<std::string>{"Müller", "Berlin"}));
+    EXPECT_EQ(record_fields(page, RecordNumber{1}, EscapeMode::backslash),
+              (std::vector<std::string>{"Müller", "Berlin"}));
     EXPECT_EQ(record_fields(page, RecordNumber{2}, EscapeMode::backslash), std::vector<std::string>{"^ \\"});
 }
 
 class PrintReportTest : public testing::Test {
 protected:
-    PrintReportTest() : directory_(std::filesystem::temp_directory_path() / ("linefeed-report-" + std::to_string(::getpid()))) {
+    PrintReportTest()
+        : directory_(std::filesystem::temp_directory_path() / ("linefeed-report-" + std::to_string(::getpid()))) {
         std::filesystem::remove_all(directory_);
         spool_.emplace(spool::Spool::open(directory_ / "spool.db", {[] { return std::int64_t{1}; }, {}}).value());
         spool::JobSpec spec;
@@ -60,7 +62,9 @@ protected:
         ASSERT_TRUE(spool_->append(job_.id, entries));
     }
     PrintReport report(feeder::OutcomeCode code, RecordRange wanted = closed(1, 5), const std::string& detail = {}) {
-        return make_report(*spool_, job_, wanted, {code, {}, {}, true}, detail, EscapeMode::backslash).value();
+        return make_report(*spool_, job_, wanted, {code, protocol::MachineState::standby, {}, true}, detail,
+                           EscapeMode::backslash)
+            .value();
     }
     static std::pair<std::string, std::string> shown(const PrintReport& report, bool json) {
         testing::internal::CaptureStdout();
@@ -104,7 +108,9 @@ TEST_F(PrintReportTest, shouldCountOnlyTheWantedRecords) {
 }
 
 TEST_F(PrintReportTest, shouldNameTheRecordsInDoubtAndDisarmThem) {
-    run({{LedgerKind::printed, closed(1, 2)}, {LedgerKind::in_doubt, closed(3, 3)}, {LedgerKind::unused, closed(4, 5)}});
+    run({{LedgerKind::printed, closed(1, 2)},
+         {LedgerKind::in_doubt, closed(3, 3)},
+         {LedgerKind::unused, closed(4, 5)}});
     const PrintReport doubtful = report(feeder::OutcomeCode::stop_requested);
     EXPECT_EQ(doubtful.code, ExitCode::in_doubt) << "whatever the outcome was";
     const auto [out, err] = shown(doubtful, false);
@@ -121,7 +127,9 @@ TEST_F(PrintReportTest, shouldNotPromiseARecordWhoseFateIsOpen) {
 }
 
 TEST_F(PrintReportTest, shouldGiveProgramsTheSameFacts) {
-    run({{LedgerKind::printed, closed(1, 2)}, {LedgerKind::in_doubt, closed(3, 3)}, {LedgerKind::unused, closed(4, 5)}});
+    run({{LedgerKind::printed, closed(1, 2)},
+         {LedgerKind::in_doubt, closed(3, 3)},
+         {LedgerKind::unused, closed(4, 5)}});
     const auto [out, err] = shown(report(feeder::OutcomeCode::link_lost, closed(1, 5), "reset by peer"), true);
     const auto json = nlohmann::json::parse(out);
     EXPECT_EQ(json["result"], "link_lost");
@@ -151,7 +159,8 @@ TEST(ShowBadRows, shouldNameEveryRowAndSayWhatToDo) {
     EXPECT_EQ(testing::internal::GetCapturedStderr(),
               "linefeed: names.csv: line 3, column name: character 2 is U+0009 (TAB)\n"
               "linefeed: names.csv: line 7: 4 fields instead of 3\n"
-              "linefeed: nothing is imported: 2 of 10 rows cannot be printed; mend them, or leave them out with --skip-bad\n");
+              "linefeed: nothing is imported: 2 of 10 rows cannot be printed; mend them, or leave them out with "
+              "--skip-bad\n");
 }
 
 TEST(ShowBadRows, shouldCountWhatItDoesNotName) {

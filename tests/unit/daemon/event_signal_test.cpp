@@ -2,9 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include <poll.h>
-
 #include <chrono>
+#include <poll.h>
 #include <thread>
 
 namespace linefeed::daemon {

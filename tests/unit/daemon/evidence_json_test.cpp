@@ -44,8 +44,8 @@ TEST(EvidenceJson, shouldSurviveAnyBytesInThePrintersStrings) {
 }
 
 TEST(EvidenceJson, shouldNotReadWhatIsNoRunStart) {
-    for (const char* text : {"", "{", "[]", "null", "7", "\"printer\"", "{}", R"({"printer":7})", R"({"serial_number":"1"})",
-                             R"({"printer":"tcp://a:1")"}) {
+    for (const char* text : {"", "{", "[]", "null", "7", "\"printer\"", "{}", R"({"printer":7})",
+                             R"({"serial_number":"1"})", R"({"printer":"tcp://a:1")"}) {
         EXPECT_EQ(parse_run_start(text), std::nullopt) << text;
     }
 }
@@ -76,8 +76,9 @@ TEST(EvidenceJson, shouldSayWhatAVerdictRestsOn) {
 TEST(EvidenceJson, shouldKeepTheErrorNumberAsThePrinterSentIt) {
     EXPECT_EQ(outcome_json({feeder::OutcomeCode::finished, protocol::MachineState::ready_to_print, {}, true}),
               R"({"outcome":"finished","machine":"ready for print start"})");
-    EXPECT_EQ(outcome_json({feeder::OutcomeCode::printer_error, protocol::MachineState::ready_to_print, {-1711274809}, true}),
-              R"({"outcome":"printer_error","machine":"ready for print start","error":-1711274809})");
+    EXPECT_EQ(
+        outcome_json({feeder::OutcomeCode::printer_error, protocol::MachineState::ready_to_print, {-1711274809}, true}),
+        R"({"outcome":"printer_error","machine":"ready for print start","error":-1711274809})");
 }
 
 } // namespace

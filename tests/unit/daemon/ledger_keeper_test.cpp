@@ -1,4 +1,5 @@
-// What the feeder says, as rows of a real spool: which records are granted, and that issued = printed + in doubt + unused + open.
+// What the feeder says, as rows of a real spool: which records are granted, and that issued = printed + in doubt +
+// unused + open.
 #include "daemon/ledger_keeper.hpp"
 
 #include <gtest/gtest.h>
@@ -23,9 +24,16 @@ feeder::Settle verdict(RecordRange printed, RecordRange in_doubt, RecordRange un
     return settle;
 }
 
+feeder::Outcome ended(feeder::OutcomeCode code) {
+    feeder::Outcome outcome;
+    outcome.code = code;
+    return outcome;
+}
+
 class LedgerKeeperTest : public testing::Test {
 protected:
-    LedgerKeeperTest() : directory_(std::filesystem::temp_directory_path() / ("linefeed-keeper-" + std::to_string(::getpid()))) {
+    LedgerKeeperTest()
+        : directory_(std::filesystem::temp_directory_path() / ("linefeed-keeper-" + std::to_string(::getpid()))) {
         std::filesystem::remove_all(directory_);
         spool_.emplace(spool::Spool::open(directory_ / "spool.db", {[this] { return ++clock_; }, {}}).value());
         spool::JobSpec spec;
@@ -110,7 +118,8 @@ TEST_F(LedgerKeeperTest, shouldWriteOnlyWhatIsNew) {
     EXPECT_EQ(ledger.intent_through(), RecordNumber{700});
     EXPECT_EQ(in_state(RecordState::open), Ranges{closed(21, 700)});
     EXPECT_EQ(in_state(RecordState::printed), Ranges{closed(1, 20)});
-    EXPECT_EQ(kinds(), (std::vector{LedgerKind::run_started, LedgerKind::intent, LedgerKind::intent, LedgerKind::printed}));
+    EXPECT_EQ(kinds(),
+              (std::vector{LedgerKind::run_started, LedgerKind::intent, LedgerKind::intent, LedgerKind::printed}));
 }
 
 TEST_F(LedgerKeeperTest, shouldWriteAnIntentBeforeItsConfirmation) {
@@ -131,7 +140,7 @@ TEST_F(LedgerKeeperTest, shouldCallUnusedWhatIsNeitherPrintedNorInDoubt) {
     ledger.printed(RecordNumber{100}, {});
     // The records behind 356 were intended, but never sent: the feeder does not name them.
     ASSERT_TRUE(ledger.settle(verdict(closed(101, 120), closed(121, 121), closed(122, 356))));
-    ASSERT_TRUE(ledger.finish({feeder::OutcomeCode::stop_requested, {}, {}, true}));
+    ASSERT_TRUE(ledger.finish(ended(feeder::OutcomeCode::stop_requested)));
     EXPECT_EQ(in_state(RecordState::printed), Ranges{closed(1, 120)});
     EXPECT_EQ(in_state(RecordState::in_doubt), Ranges{closed(121, 121)});
     EXPECT_EQ(in_state(RecordState::unused), Ranges{closed(122, 512)});
@@ -162,7 +171,7 @@ TEST_F(LedgerKeeperTest, shouldGrantNothingWhenAllIsPrinted) {
     ASSERT_TRUE(grant);
     EXPECT_TRUE(grant->range.empty());
     EXPECT_FALSE(grant->in_doubt);
-    ASSERT_TRUE(ledger.finish({feeder::OutcomeCode::nothing_to_print, {}, {}, false}));
+    ASSERT_TRUE(ledger.finish(ended(feeder::OutcomeCode::nothing_to_print)));
     EXPECT_NE(kinds().back(), LedgerKind::run_ended) << "there was no second run";
 }
 
@@ -197,8 +206,8 @@ TEST_F(LedgerKeeperTest, shouldFindWhatACrashLeftOpen) {
     EXPECT_EQ(found->job, job_);
     EXPECT_EQ(found->records, closed(131, 611));
     EXPECT_EQ(found->printer, "tcp://10.0.0.5:3000");
-    EXPECT_EQ(found->facts,
-              (feeder::OpenRun{RecordNumber{100}, RecordNumber{130}, RecordNumber{611}, "104711", 5000, RecordNumber{77}}));
+    EXPECT_EQ(found->facts, (feeder::OpenRun{RecordNumber{100}, RecordNumber{130}, RecordNumber{611}, "104711", 5000,
+                                             RecordNumber{77}}));
 }
 
 TEST_F(LedgerKeeperTest, shouldSettleACrashedRunBeforeTheNext) {

@@ -36,6 +36,7 @@ TEST(Actions, shouldPrintAsAStory) {
     settle.earlier_run = true;
     EXPECT_EQ(text(settle), "settle the earlier run: printed 1-2, in doubt 3-3, unused 4-9 by mail status");
     EXPECT_EQ(text(BeginRun{{}, RecordNumber{3}}), "begin run, last printed before 3");
+    EXPECT_EQ(text(AdoptRun{RecordNumber{3}, RecordNumber{7}, {}}), "adopt run, printed through 3, sent through 7");
     EXPECT_EQ(text(AskIntent{RecordNumber{100}}), "intent through 100");
     EXPECT_EQ(text(ConfirmPrinted{RecordNumber{5}, {}}), "printed through 5");
     EXPECT_EQ(text(Notice{NoticeCode::printing_started, {}}), "notice: printing");
@@ -50,11 +51,40 @@ TEST(Actions, shouldCompareByWhatTheyDo) {
     EXPECT_NE(Action{SetStopAt{RecordNumber{1}}}, Action{SendEndMarker{RecordNumber{1}}});
 }
 
+/// A value of each kind, and one that differs in one member.
+TEST(Actions, shouldCompareEveryMember) {
+    const auto expect_differs = [](const Action& one, const Action& other) {
+        EXPECT_EQ(one, Action{one});
+        EXPECT_NE(one, other) << text(one);
+    };
+    expect_differs(Command{protocol::Action::start_print}, Command{protocol::Action::stop_print});
+    expect_differs(SetStopAt{RecordNumber{1}}, SetStopAt{RecordNumber{2}});
+    expect_differs(SendEndMarker{RecordNumber{1}}, SendEndMarker{RecordNumber{2}});
+    expect_differs(AskIntent{RecordNumber{1}}, AskIntent{RecordNumber{2}});
+    expect_differs(BeginRun{{}, RecordNumber{1}}, BeginRun{{}, RecordNumber{2}});
+    expect_differs(BeginRun{{.version = {}, .total_prints = 1, .job_name = {}}, {}}, BeginRun{});
+    expect_differs(AdoptRun{RecordNumber{1}, RecordNumber{3}, {}}, AdoptRun{RecordNumber{1}, RecordNumber{4}, {}});
+    expect_differs(ConfirmPrinted{RecordNumber{1}, {}}, ConfirmPrinted{RecordNumber{1}, {.depth = 256}});
+    expect_differs(Notice{NoticeCode::printer_warning, {1}}, Notice{NoticeCode::printer_warning, {2}});
+    expect_differs(End{{OutcomeCode::finished, {}, {}, false}}, End{{OutcomeCode::finished, {}, {}, true}});
+    Settle settle;
+    settle.evidence.restarted = true;
+    expect_differs(Settle{}, settle);
+    settle = {};
+    settle.verdict.unused = records(1, 2);
+    expect_differs(Settle{}, settle);
+    const OpenRun run{RecordNumber{1}, RecordNumber{2}, RecordNumber{3}, "S1", 4, RecordNumber{5}};
+    OpenRun other = run;
+    EXPECT_EQ(run, other);
+    other.total_before.reset();
+    EXPECT_NE(run, other);
+}
+
 TEST(Actions, shouldHaveWordsForEveryNotice) {
     std::set<std::string> seen;
-    for (const NoticeCode code :
-         {NoticeCode::printing_started, NoticeCode::stop_point_ignored, NoticeCode::error_acknowledged,
-          NoticeCode::printer_warning, NoticeCode::found_printing, NoticeCode::nozzle_opening, NoticeCode::entries_differ}) {
+    for (const NoticeCode code : {NoticeCode::printing_started, NoticeCode::stop_point_ignored,
+                                  NoticeCode::error_acknowledged, NoticeCode::printer_warning, NoticeCode::taken_over,
+                                  NoticeCode::found_printing, NoticeCode::nozzle_opening, NoticeCode::entries_differ}) {
         const std::string words = describe(Notice{code, {1223}});
         EXPECT_FALSE(words.empty());
         EXPECT_EQ(words.find('\n'), std::string::npos);
@@ -65,12 +95,15 @@ TEST(Actions, shouldHaveWordsForEveryNotice) {
 }
 
 constexpr std::array all_codes{
-    OutcomeCode::finished,          OutcomeCode::nothing_to_print,  OutcomeCode::stop_requested,
-    OutcomeCode::stopped_at_printer, OutcomeCode::printer_error,    OutcomeCode::not_ready,
-    OutcomeCode::cover_open,        OutcomeCode::busy,              OutcomeCode::error_pending,
-    OutcomeCode::fifo_not_flushed,  OutcomeCode::records_not_taken, OutcomeCode::did_not_start,
-    OutcomeCode::did_not_stop,      OutcomeCode::impossible_report, OutcomeCode::printer_restarted,
-    OutcomeCode::no_answer,         OutcomeCode::link_lost,         OutcomeCode::unreachable,
+    OutcomeCode::finished,          OutcomeCode::nothing_to_print,
+    OutcomeCode::stop_requested,    OutcomeCode::stopped_at_printer,
+    OutcomeCode::printer_error,     OutcomeCode::not_ready,
+    OutcomeCode::cover_open,        OutcomeCode::busy,
+    OutcomeCode::error_pending,     OutcomeCode::fifo_not_flushed,
+    OutcomeCode::records_not_taken, OutcomeCode::did_not_start,
+    OutcomeCode::did_not_stop,      OutcomeCode::impossible_report,
+    OutcomeCode::printer_restarted, OutcomeCode::no_answer,
+    OutcomeCode::link_lost,         OutcomeCode::unreachable,
     OutcomeCode::records_in_doubt,  OutcomeCode::storage_failed,
 };
 
@@ -88,9 +121,9 @@ TEST(Outcome, shouldHaveANameAndWordsForEveryCode) {
 
 TEST(Outcome, shouldSayWhatToDoInEveryStateThatDoesNotAllowAStart) {
     std::set<std::string> words;
-    for (const auto state : {protocol::MachineState::standby, protocol::MachineState::initialising,
-                             protocol::MachineState::service, protocol::MachineState::ready,
-                             protocol::MachineState::ready_to_print, protocol::MachineState::printing}) {
+    for (const auto state :
+         {protocol::MachineState::standby, protocol::MachineState::initialising, protocol::MachineState::service,
+          protocol::MachineState::ready, protocol::MachineState::ready_to_print, protocol::MachineState::printing}) {
         const std::string described = describe(Outcome{OutcomeCode::not_ready, state, {}, false});
         EXPECT_NE(described.find(protocol::to_string(state)), std::string::npos);
         EXPECT_TRUE(words.insert(described).second);

@@ -34,7 +34,8 @@ TEST(Pacing, shouldKnowNoRateBeforeItHasMeasured) {
 
 TEST(Pacing, shouldMeasureTheRateAtAnyPollingInterval) {
     for (const double rate : {1.0, 50.0, 500.0, 5000.0}) {
-        for (const Duration interval : {Duration{milliseconds{1}}, Duration{milliseconds{20}}, Duration{milliseconds{250}}}) {
+        for (const Duration interval :
+             {Duration{milliseconds{1}}, Duration{milliseconds{20}}, Duration{milliseconds{250}}}) {
             Pacing pacing{PacingSettings{}};
             pacing.restart(start);
             run(pacing, rate, seconds{5}, interval);

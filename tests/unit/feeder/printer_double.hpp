@@ -1,5 +1,5 @@
-// A printer small enough to be believed at a glance, for judging the feeder by what sticks to the products: a FIFO, the law that a stop
-// empties it, a stop point, answers to `?SM` that may be one inquiry old, and a tape.
+// A printer small enough to be believed at a glance, for judging the feeder by what sticks to the products: a FIFO, the
+// law that a stop empties it, a stop point, answers to `?SM` that may be one inquiry old, and a tape.
 #pragma once
 
 #include "story.hpp"
@@ -43,15 +43,25 @@ public:
 
     void take(const Command& command) {
         switch (command.what) {
-        case protocol::Action::start_print: start(); break;
-        case protocol::Action::stop_print: stop(); break;
-        case protocol::Action::flush_fifo: fifo_.clear(); break;
-        case protocol::Action::acknowledge_errors: error_ = 0; break;
-        default: break;
+        case protocol::Action::start_print:
+            start();
+            break;
+        case protocol::Action::stop_print:
+            stop();
+            break;
+        case protocol::Action::flush_fifo:
+            fifo_.clear();
+            break;
+        case protocol::Action::acknowledge_errors:
+            error_ = 0;
+            break;
+        default:
+            break;
         }
     }
     void take(const SetStopAt& stop) {
-        const bool takes = habit_ == StopPointHabit::kept || (habit_ == StopPointHabit::only_while_printing && printing_);
+        const bool takes =
+            habit_ == StopPointHabit::kept || (habit_ == StopPointHabit::only_while_printing && printing_);
         stop_at_ = takes ? stop.number.value() : 0;
     }
     void take_record(std::uint32_t number) {

@@ -1,5 +1,5 @@
-// The decision table of reconciliation, row by row, and its arithmetic over all small cases. The standard run issued the records
-// 101-120, the printer showed number 77 before it and had made 1000 prints.
+// The decision table of reconciliation, row by row, and its arithmetic over all small cases. The standard run issued
+// the records 101-120, the printer showed number 77 before it and had made 1000 prints.
 #include "feeder/reconcile.hpp"
 
 #include <gtest/gtest.h>
@@ -9,7 +9,9 @@
 namespace linefeed::feeder {
 namespace {
 
-RecordNumber no(std::uint32_t value) { return RecordNumber{value}; }
+RecordNumber no(std::uint32_t value) {
+    return RecordNumber{value};
+}
 
 OpenRun run_with(std::uint32_t printed_through) {
     return {no(101), no(printed_through), no(120), "S1", 1000, no(77)};
@@ -56,7 +58,8 @@ TEST(Reconcile, shouldBelieveNoOtherPrinter) {
 }
 
 TEST(Reconcile, shouldTakeAPrinterWithoutSerialNumberForTheSame) {
-    const std::string as_reported = "printed 101-105, in doubt none, unused 106-120 by mail status and total print counter";
+    const std::string as_reported =
+        "printed 101-105, in doubt none, unused 106-120 by mail status and total print counter";
     Evidence evidence = says(105, 1005);
     evidence.printer.version->serial_number.clear();
     EXPECT_EQ(verdict(run_with(100), evidence), as_reported);
@@ -106,8 +109,7 @@ TEST(Reconcile, shouldBelieveTheNumberAloneWhenTheCounterIsMissing) {
 }
 
 TEST(Reconcile, shouldBelieveTheNumberWhenTheCounterDoesNotMove) {
-    EXPECT_EQ(verdict(run_with(110), says(115, 1000)),
-              "printed 111-115, in doubt none, unused 116-120 by mail status");
+    EXPECT_EQ(verdict(run_with(110), says(115, 1000)), "printed 111-115, in doubt none, unused 116-120 by mail status");
     EXPECT_EQ(verdict(run_with(110), says(115, 1000, false)),
               "printed 111-114, in doubt 115-115, unused 116-120 by mail status");
 }
@@ -194,10 +196,13 @@ TEST(Reconcile, shouldGoByTheCounterAfterAPowerCycleAndDoubtTheLastPrint) {
         EXPECT_EQ(verdict(run_with(110), says(0, 1015, finished)),
                   "printed 111-114, in doubt 115-115, unused 116-120 by total print counter");
     }
-    EXPECT_EQ(verdict(run_with(110), says(0, 1011)), "printed none, in doubt 111-111, unused 112-120 by total print counter");
-    EXPECT_EQ(verdict(run_with(110), says(0, 1010)), "printed none, in doubt none, unused 111-120 by total print counter")
+    EXPECT_EQ(verdict(run_with(110), says(0, 1011)),
+              "printed none, in doubt 111-111, unused 112-120 by total print counter");
+    EXPECT_EQ(verdict(run_with(110), says(0, 1010)),
+              "printed none, in doubt none, unused 111-120 by total print counter")
         << "110 is confirmed, and finished";
-    EXPECT_EQ(verdict(run_with(110), says(0, 1020)), "printed 111-119, in doubt 120-120, unused none by total print counter");
+    EXPECT_EQ(verdict(run_with(110), says(0, 1020)),
+              "printed 111-119, in doubt 120-120, unused none by total print counter");
     EXPECT_EQ(verdict(run_with(100), says(0, 1003)),
               "printed 101-102, in doubt 103-103, unused 104-120 by total print counter");
     EXPECT_EQ(verdict(run_with(100), says(0, 1000)), nothing_printed_by + "total print counter");
@@ -244,12 +249,13 @@ TEST(Reconcile, shouldWorkAtTheEndsOf32Bits) {
     const OpenRun upper{no(max - 2), no(max - 3), no(max), "", 0, no(0)};
     EXPECT_EQ(verdict(upper, says(max, 3)),
               "printed 4294967293-4294967295, in doubt none, unused none by mail status and total print counter");
-    EXPECT_EQ(verdict(upper, says(max, 3, false)),
-              "printed 4294967293-4294967294, in doubt 4294967295-4294967295, unused none by mail status and total print counter");
+    EXPECT_EQ(verdict(upper, says(max, 3, false)), "printed 4294967293-4294967294, in doubt 4294967295-4294967295, "
+                                                   "unused none by mail status and total print counter");
     EXPECT_EQ(verdict(upper, says(0, 3)),
               "printed 4294967293-4294967294, in doubt 4294967295-4294967295, unused none by total print counter");
     const OpenRun whole{no(1), no(0), no(max), "", 5, no(0)};
-    EXPECT_EQ(verdict(whole, says(0, 4)), "printed 1-4294967294, in doubt 4294967295-4294967295, unused none by total print counter");
+    EXPECT_EQ(verdict(whole, says(0, 4)),
+              "printed 1-4294967294, in doubt 4294967295-4294967295, unused none by total print counter");
     EXPECT_EQ(verdict(whole, says(max, 4)),
               "printed 1-4294967295, in doubt none, unused none by mail status and total print counter");
     const OpenRun lower{no(1), no(0), no(3), "", 5, no(9)};
@@ -268,8 +274,8 @@ TEST(ReconcileDeathTest, shouldRefuseARunThatCannotBe) {
     EXPECT_DEATH(static_cast<void>(run(10, 12, 11)), "issued_through");
 }
 
-/// Every small run with every number, counter and flag: the verdict covers exactly what was issued and not confirmed, in order, and
-/// doubts no more and no less than its basis allows.
+/// Every small run with every number, counter and flag: the verdict covers exactly what was issued and not confirmed,
+/// in order, and doubts no more and no less than its basis allows.
 TEST(Reconcile, shouldCoverExactlyWhatWasIssuedWhateverTheEvidence) {
     std::uint64_t cases = 0;
     const auto check = [&cases](const OpenRun& run, const Evidence& evidence) {
@@ -283,16 +289,22 @@ TEST(Reconcile, shouldCoverExactlyWhatWasIssuedWhateverTheEvidence) {
         }
         ASSERT_EQ(next, run.issued_through.value() + 1);
         switch (verdict.basis) {
-        case Basis::nothing_issued: ASSERT_EQ(run.printed_through, run.issued_through); break;
+        case Basis::nothing_issued:
+            ASSERT_EQ(run.printed_through, run.issued_through);
+            break;
         case Basis::none:
             ASSERT_TRUE(verdict.printed.empty() && verdict.unused.empty() && !verdict.in_doubt.empty());
             break;
-        case Basis::end_message: ASSERT_TRUE(verdict.in_doubt.empty() && verdict.unused.empty()); break;
+        case Basis::end_message:
+            ASSERT_TRUE(verdict.in_doubt.empty() && verdict.unused.empty());
+            break;
         case Basis::mail_status_and_counter:
         case Basis::mail_status:
             ASSERT_LE(verdict.in_doubt.count().value(), evidence.mail.last_print_finished ? 0U : 1U);
             break;
-        case Basis::counter: ASSERT_LE(verdict.in_doubt.count().value(), 1U); break;
+        case Basis::counter:
+            ASSERT_LE(verdict.in_doubt.count().value(), 1U);
+            break;
         }
         ++cases;
     };
@@ -312,8 +324,8 @@ TEST(Reconcile, shouldCoverExactlyWhatWasIssuedWhateverTheEvidence) {
                                     evidence.printer.total_prints.reset();
                                 }
                                 ASSERT_NO_FATAL_FAILURE(check(run, evidence))
-                                    << first << ' ' << issued << ' ' << printed << ' ' << before << ' ' << reported << ' '
-                                    << total << ' ' << flags;
+                                    << first << ' ' << issued << ' ' << printed << ' ' << before << ' ' << reported
+                                    << ' ' << total << ' ' << flags;
                             }
                         }
                     }

@@ -8,8 +8,12 @@
 namespace linefeed::feeder {
 namespace {
 
-RecordNumber no(std::uint32_t value) { return RecordNumber{value}; }
-RecordRange records(std::uint32_t first, std::uint32_t last) { return RecordRange::closed(no(first), no(last)); }
+RecordNumber no(std::uint32_t value) {
+    return RecordNumber{value};
+}
+RecordRange records(std::uint32_t first, std::uint32_t last) {
+    return RecordRange::closed(no(first), no(last));
+}
 
 Refill begun(RecordRange range, std::uint64_t depth) {
     Refill refill;

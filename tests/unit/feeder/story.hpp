@@ -1,5 +1,6 @@
-// Stories for the feeder: facts go in by name, and what the feeder wants done is compared as the text that its actions print. The
-// standard run is the records 101-110 through a FIFO of 4, on a printer that last printed number 77 and has made 1000 prints.
+// Stories for the feeder: facts go in by name, and what the feeder wants done is compared as the text that its actions
+// print. The standard run is the records 101-110 through a FIFO of 4, on a printer that last printed number 77 and has
+// made 1000 prints.
 #pragma once
 
 #include "feeder/feeder.hpp"
@@ -59,11 +60,12 @@ public:
     void start() { feeder.start(now, actions); }
     void rs(State machine, std::int32_t error = 0, bool cover_open = false) {
         feeder.on_machine_status(
-            {.machine = machine, .error = {error}, .cover_open = cover_open, .job_changed = std::nullopt}, now, actions);
+            {.machine = machine, .error = {error}, .cover_open = cover_open, .job_changed = std::nullopt}, now,
+            actions);
     }
     void sm(std::uint32_t entries, std::uint32_t last_printed, std::uint32_t stop_at, bool finished = true) {
-        feeder.on_mail_status({reported_depth, entries, RecordNumber{last_printed}, RecordNumber{stop_at}, finished, {}},
-                              now, actions);
+        feeder.on_mail_status(
+            {reported_depth, entries, RecordNumber{last_printed}, RecordNumber{stop_at}, finished, {}}, now, actions);
     }
     void cc(std::optional<std::uint32_t> total) {
         feeder.on_counters({.product = {}, .stop_after = {}, .total = total}, now, actions);
@@ -155,9 +157,14 @@ public:
         sm(0, last, 0);
         cc(1010);
     }
-    /// After a stop: the printer stands, and says where.
+    /// After a stop: the printer stands, and says where; the ledger takes it down.
     void judge(std::uint32_t entries, std::uint32_t last_printed, bool finished = true,
                std::optional<std::uint32_t> total = std::nullopt, std::int32_t error = 0) {
+        judge_unsettled(entries, last_printed, finished, total, error);
+        settled();
+    }
+    void judge_unsettled(std::uint32_t entries, std::uint32_t last_printed, bool finished = true,
+                         std::optional<std::uint32_t> total = std::nullopt, std::int32_t error = 0) {
         rs(State::ready_to_print, error);
         rs(State::ready_to_print, error);
         sm(entries, last_printed, 0, finished);
@@ -193,9 +200,14 @@ inline Story reach(Phase phase) {
     }
     Story story{settings, plan};
     switch (phase) {
-    case Phase::idle: break;
-    case Phase::identifying: story.start(); break;
-    case Phase::locating: story.identify(); break;
+    case Phase::idle:
+        break;
+    case Phase::identifying:
+        story.start();
+        break;
+    case Phase::locating:
+        story.identify();
+        break;
     case Phase::halting:
         story.identify(State::printing);
         story.locate(150, 950);
@@ -214,7 +226,9 @@ inline Story reach(Phase phase) {
         story.identify(State::ready_to_print, end_message);
         story.locate();
         break;
-    case Phase::granting: story.arm_to_grant(); break;
+    case Phase::granting:
+        story.arm_to_grant();
+        break;
     case Phase::flushing:
         story.arm_to_grant();
         story.granted();
@@ -235,8 +249,12 @@ inline Story reach(Phase phase) {
         story.flush_and_set_stop();
         story.supplied(Story::last);
         break;
-    case Phase::starting: story.arm(); break;
-    case Phase::printing: story.print(); break;
+    case Phase::starting:
+        story.arm();
+        break;
+    case Phase::printing:
+        story.print();
+        break;
     case Phase::stopping:
         story.print();
         story.stop();
@@ -246,11 +264,13 @@ inline Story reach(Phase phase) {
         story.stop();
         story.rs(State::ready_to_print);
         break;
-    case Phase::finishing: story.print_all(); break;
+    case Phase::finishing:
+        story.print_all();
+        break;
     case Phase::clearing:
         story = reach(Phase::verifying);
         story.stop();
-        story.judge(3, 77, true, 1000);
+        story.judge_unsettled(3, 77, true, 1000);
         break;
     case Phase::ended:
         story.start();
@@ -263,9 +283,10 @@ inline Story reach(Phase phase) {
 }
 
 inline constexpr std::array all_phases{
-    Phase::idle,     Phase::identifying,   Phase::locating, Phase::taking_over, Phase::halting,  Phase::opening_nozzle, Phase::acknowledging,
-    Phase::granting, Phase::flushing,      Phase::setting_stop, Phase::loading, Phase::verifying,   Phase::starting,
-    Phase::printing, Phase::stopping,      Phase::judging,  Phase::finishing, Phase::clearing,      Phase::ended,
+    Phase::idle,           Phase::identifying,   Phase::locating, Phase::taking_over, Phase::halting,
+    Phase::opening_nozzle, Phase::acknowledging, Phase::granting, Phase::flushing,    Phase::setting_stop,
+    Phase::loading,        Phase::verifying,     Phase::starting, Phase::printing,    Phase::stopping,
+    Phase::judging,        Phase::finishing,     Phase::clearing, Phase::ended,
 };
 
 } // namespace linefeed::feeder

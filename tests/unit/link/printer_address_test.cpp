@@ -6,24 +6,29 @@
 namespace linefeed::link {
 namespace {
 
+PrinterAddress read(const char* text) {
+    return parse_printer_address(text).value();
+}
+
 TEST(PrinterAddress, shouldReadHostAndPort) {
-    EXPECT_EQ(parse_printer_address("tcp://192.168.1.20:3002"), (PrinterAddress{"192.168.1.20", 3002}));
-    EXPECT_EQ(parse_printer_address("tcp://jet-4.line:65535"), (PrinterAddress{"jet-4.line", 65535}));
-    EXPECT_EQ(parse_printer_address("tcp://printer:1/"), (PrinterAddress{"printer", 1}));
+    EXPECT_EQ(read("tcp://192.168.1.20:3002"), (PrinterAddress{"192.168.1.20", 3002}));
+    EXPECT_EQ(read("tcp://jet-4.line:65535"), (PrinterAddress{"jet-4.line", 65535}));
+    EXPECT_EQ(read("tcp://printer:1/"), (PrinterAddress{"printer", 1}));
 }
 
 TEST(PrinterAddress, shouldTakeThePrintersUsualPortIfNoneIsGiven) {
-    EXPECT_EQ(parse_printer_address("tcp://printer"), (PrinterAddress{"printer", 3000}));
-    EXPECT_EQ(parse_printer_address("tcp://[::1]"), (PrinterAddress{"::1", 3000}));
+    EXPECT_EQ(read("tcp://printer"), (PrinterAddress{"printer", 3000}));
+    EXPECT_EQ(read("tcp://[::1]"), (PrinterAddress{"::1", 3000}));
 }
 
 TEST(PrinterAddress, shouldReadIpv6InBrackets) {
-    EXPECT_EQ(parse_printer_address("tcp://[fe80::1]:2201"), (PrinterAddress{"fe80::1", 2201}));
+    EXPECT_EQ(read("tcp://[fe80::1]:2201"), (PrinterAddress{"fe80::1", 2201}));
 }
 
 TEST(PrinterAddress, shouldRefuseWhatIsNoAddress) {
-    for (const char* text : {"", "printer", "printer:3000", "http://printer:3000", "tcp://", "tcp://:3000", "tcp:///x", "tcp://a b:3000",
-                             "tcp://user@printer:3000", "tcp://printer:3000/path", "tcp://[::1", "tcp://[]:3000", "tcp://[::1]3000"}) {
+    for (const char* text :
+         {"", "printer", "printer:3000", "http://printer:3000", "tcp://", "tcp://:3000", "tcp:///x", "tcp://a b:3000",
+          "tcp://user@printer:3000", "tcp://printer:3000/path", "tcp://[::1", "tcp://[]:3000", "tcp://[::1]3000"}) {
         const auto address = parse_printer_address(text);
         ASSERT_FALSE(address) << text;
         EXPECT_EQ(address.error().kind, FailureKind::usage) << text;
@@ -31,8 +36,9 @@ TEST(PrinterAddress, shouldRefuseWhatIsNoAddress) {
 }
 
 TEST(PrinterAddress, shouldRefuseWhatIsNoPort) {
-    for (const char* text : {"tcp://printer:", "tcp://printer:0", "tcp://printer:65536", "tcp://printer:-1", "tcp://printer:+1",
-                             "tcp://printer:30x", "tcp://printer: 30", "tcp://printer:30:31", "tcp://[::1]:"}) {
+    for (const char* text :
+         {"tcp://printer:", "tcp://printer:0", "tcp://printer:65536", "tcp://printer:-1", "tcp://printer:+1",
+          "tcp://printer:30x", "tcp://printer: 30", "tcp://printer:30:31", "tcp://[::1]:"}) {
         EXPECT_FALSE(parse_printer_address(text)) << text;
     }
 }
@@ -62,7 +68,8 @@ TEST(PrinterAddress, shouldNameAHostThatCannotBeFound) {
     const auto endpoints = resolve({"no-such-host.invalid", 3000});
     ASSERT_FALSE(endpoints);
     EXPECT_EQ(endpoints.error().kind, FailureKind::unreachable);
-    EXPECT_TRUE(endpoints.error().message.starts_with("tcp://no-such-host.invalid:3000: cannot find the host")) << endpoints.error().message;
+    EXPECT_TRUE(endpoints.error().message.starts_with("tcp://no-such-host.invalid:3000: cannot find the host"))
+        << endpoints.error().message;
 }
 
 } // namespace

@@ -1,0 +1,309 @@
+// What happens to a run: connections, bytes, completions, time; carried out in the order of link::TcpLink and daemon::JobRun.
+#include "host_run.hpp"
+
+#include <algorithm>
+#include <sstream>
+#include <utility>
+
+namespace linefeed::simulation {
+
+using session::Effects;
+using session::Session;
+
+namespace {
+
+constexpr std::size_t request_ring = 256;      ///< daemon::Store::ring_capacity
+constexpr Duration connect_timeout = std::chrono::seconds{3};
+
+} // namespace
+
+bool Host::is_current(std::uint64_t generation) const {
+    return run_ && run_->generation == generation;
+}
+
+std::optional<feeder::Phase> Host::phase() const {
+    return run_ ? std::optional{run_->session.feeder().phase()} : std::nullopt;
+}
+
+bool Host::all_sent() const {
+    return run_ && !run_->session.feeder().refill().range().empty() && run_->session.feeder().refill().all_sent();
+}
+
+void Host::begin_run(const std::optional<daemon::OpenIssue>& open) {
+    ++context_.counts.runs;
+    const feeder::FeederPlan plan = daemon::make_plan(open, job_, wanted_);
+    session::SessionSettings settings;
+    settings.feeder.open_nozzle = context_.scenario.open_nozzle;
+    settings.record_fields = context_.scenario.two_fields ? 2 : 1;
+    const std::uint64_t generation = ++generation_;
+    run_ = std::make_unique<Run>(
+        settings, plan,
+        VirtualStore{context_, random_.fork(generation),
+                     daemon::StoreWork{*spool_, job_, daemon::LedgerKeeper{*spool_, job_, wanted_, "tcp://printer:3000", open}},
+                     generation},
+        generation);
+    const bool reachable = !wire_.down();
+    context_.after(reachable ? 2 * wire_.latency() : connect_timeout, EventKind::connected, generation, reachable ? 1 : 0);
+}
+
+void Host::connected(std::uint64_t generation, std::uint64_t success) {
+    if (!is_current(generation) || run_->finished) {
+        return;
+    }
+    if (success == 0 || wire_.down()) {
+        run_->finished = true;
+        run_->outcome = {feeder::OutcomeCode::unreachable, {}, {}, false};
+        run_->store.push(feeder::End{run_->outcome});
+        return;
+    }
+    run_->connection = wire_.open();
+    run_->open = true;
+    call([](Session& session, Instant now, Effects& effects) { session.on_connected(now, effects); });
+}
+
+void Host::receive(std::uint64_t connection, std::string_view bytes) {
+    if (!run_ || !run_->open || run_->connection != connection) {
+        return;
+    }
+    if (paused()) {
+        run_->inbox += bytes;
+        return;
+    }
+    call([bytes](Session& session, Instant now, Effects& effects) { session.on_received(bytes, now, effects); });
+}
+
+void Host::link_closed(std::uint64_t connection) {
+    if (!run_ || !run_->open || run_->connection != connection) {
+        return;
+    }
+    if (paused()) {
+        run_->peer_closed = true;
+        return;
+    }
+    context_.trace.note(context_.now, "link lost");
+    run_->open = false;
+    wire_.host_closes(connection);
+    call([](Session& session, Instant now, Effects& effects) { session.on_closed(now, effects); });
+}
+
+Instant Host::wake_at() const {
+    if (!run_ || !run_->open || paused()) {
+        return Instant::max();
+    }
+    const auto wake = run_->session.next_wake();
+    return wake ? std::max(*wake, context_.now) : Instant::max();
+}
+
+void Host::wake() {
+    call([](Session& session, Instant now, Effects& effects) { session.on_time(now, effects); });
+}
+
+void Host::pause(Duration duration) {
+    if (run_ && !paused()) {
+        paused_until_ = context_.now + duration;
+        context_.after(duration, EventKind::host_resumes, run_->generation);
+    }
+}
+
+void Host::resume(std::uint64_t generation) {
+    if (!is_current(generation)) {
+        return;
+    }
+    const std::uint64_t first = random_.below(2);
+    for (std::uint64_t turn = 0; turn < 2 && is_current(generation) && run_->open; ++turn) {
+        if ((first + turn) % 2 == 0) {
+            const std::string bytes = std::exchange(run_->inbox, {});
+            if (!bytes.empty()) {
+                receive(run_->connection, bytes);
+            }
+        } else if (const auto wake_due = run_->session.next_wake(); wake_due && *wake_due <= context_.now) {
+            wake();
+        }
+    }
+    if (is_current(generation)) {
+        take_replies();
+    }
+    if (is_current(generation) && run_->peer_closed) {
+        link_closed(run_->connection);
+    }
+    if (is_current(generation)) {
+        write_step(generation);
+    }
+}
+
+void Host::carry_out() {
+    std::uint64_t steps = 0;
+    while (!effects_.empty()) {
+        bool write = false;
+        bool closing = false;
+        for (std::size_t i = 0; i < effects_.size(); ++i) {
+            if (steps_to_live_ && ++steps >= *steps_to_live_) {
+                die();
+                return;
+            }
+            if (std::holds_alternative<session::Write>(effects_[i])) {
+                write = true;
+            } else if (std::holds_alternative<session::CloseLink>(effects_[i])) {
+                closing = true;
+            } else {
+                on_effect(effects_[i]);
+            }
+        }
+        effects_.clear();
+        if (write && run_->open) {
+            begin_write();
+            if (continue_write()) {
+                run_->session.on_written(context_.now, effects_);
+            }
+        }
+        if (closing && run_->open) {
+            run_->open = false;
+            wire_.host_closes(run_->connection);
+        }
+    }
+    if (steps_to_live_) {
+        *steps_to_live_ -= steps;
+    }
+    if (run_->finished && run_->store.ended()) {
+        run_over();
+    }
+}
+
+void Host::on_effect(const session::Effect& effect) {
+    Run& run = *run_;
+    if (const auto* confirm = std::get_if<feeder::ConfirmPrinted>(&effect)) {
+        run.confirm = *confirm;
+        push_cumulative();
+    } else if (const auto* intent = std::get_if<feeder::AskIntent>(&effect)) {
+        run.intent = *intent;
+        push_cumulative();
+    } else if (const auto* settle = std::get_if<feeder::Settle>(&effect)) {
+        if (context_.trace.verbose()) {
+            std::ostringstream text;
+            text << settle->verdict;
+            context_.trace.say(context_.now, settle->earlier_run ? "settles earlier run" : "settles", text.str());
+        }
+        push_cumulative();
+        run.store.push(*settle);
+    } else if (const auto* begin = std::get_if<feeder::BeginRun>(&effect)) {
+        run.store.push(*begin);
+    } else if (const auto* adopt = std::get_if<feeder::AdoptRun>(&effect)) {
+        context_.trace.note(context_.now, "takes over", adopt->printed_through.value(), adopt->sent_through.value());
+        run.store.push(*adopt);
+    } else if (const auto* release = std::get_if<session::ReleasePage>(&effect)) {
+        run.store.push(daemon::PageReturned{release->page});
+    } else if (const auto* notice = std::get_if<feeder::Notice>(&effect)) {
+        context_.trace.note(context_.now, "notice", static_cast<std::uint64_t>(notice->code));
+    } else if (const auto* end = std::get_if<feeder::End>(&effect)) {
+        run.outcome = end->outcome;
+        push_cumulative();
+        run.finished = true;
+        run.store.push(*end);
+    }
+}
+
+void Host::push_cumulative() {
+    Run& run = *run_;
+    const bool last_chance = run.session.feeder().phase() == feeder::Phase::ended;
+    const std::size_t room = last_chance ? 2 : request_ring / 2;
+    if (run.intent && run.store.waiting() + room < request_ring) {
+        run.store.push(*std::exchange(run.intent, std::nullopt));
+    }
+    if (run.confirm && run.store.waiting() + room < request_ring) {
+        run.store.push(*std::exchange(run.confirm, std::nullopt));
+    }
+}
+
+void Host::begin_write() {
+    Run& run = *run_;
+    run.unwritten.clear();
+    run.written = 0;
+    for (const std::string_view piece : run.session.pieces()) {
+        run.unwritten += piece;
+    }
+    context_.trace.say(context_.now, "writes", run.unwritten);
+}
+
+void Host::write_step(std::uint64_t generation) {
+    const bool under_way = is_current(generation) && run_->open && !paused() && run_->written < run_->unwritten.size();
+    if (under_way && continue_write()) {
+        call([](Session& session, Instant now, Effects& effects) { session.on_written(now, effects); });
+    }
+}
+
+/// The kernel takes all, or a part and the rest later. True when all is written.
+bool Host::continue_write() {
+    Run& run = *run_;
+    const std::size_t left = run.unwritten.size() - run.written;
+    const bool partly = context_.scenario.slow_write > 0 && left > 1 && random_.chance(context_.scenario.slow_write);
+    const std::size_t size = partly ? random_.between(1, left - 1) : left;
+    wire_.to_printer(run.connection, std::string_view{run.unwritten}.substr(run.written, size));
+    run.written += size;
+    if (partly) {
+        context_.after(wire_.latency(), EventKind::write_step, run.generation);
+    }
+    return !partly;
+}
+
+void Host::store_done(std::uint64_t generation) {
+    if (!is_current(generation)) {
+        return;
+    }
+    run_->store.done();
+    take_replies();
+    if (is_current(generation)) {
+        run_->store.wake();
+        if (run_->finished && run_->store.ended()) {
+            run_over();
+        }
+    }
+}
+
+void Host::store_wake(std::uint64_t generation) {
+    if (is_current(generation)) {
+        run_->store.wake();
+    }
+}
+
+void Host::take_replies() {
+    for (daemon::StoreReply& reply : run_->store.take_replies()) {
+        run_->replies.push_back(std::move(reply));
+    }
+    const std::uint64_t generation = run_->generation;
+    while (is_current(generation) && !paused() && !run_->replies.empty()) {
+        const daemon::StoreReply reply = run_->replies.front();
+        run_->replies.erase(run_->replies.begin());
+        if (run_->finished) {
+            continue;
+        }
+        call([&reply](Session& session, Instant now, Effects& effects) { daemon::deliver(reply, session, now, effects); });
+        if (is_current(generation)) {
+            push_cumulative();
+        }
+    }
+}
+
+void Host::run_over() {
+    const feeder::Outcome outcome = run_->outcome;
+    context_.trace.note(context_.now, "run ends", static_cast<std::uint64_t>(outcome.code), outcome.issued ? 1 : 0);
+    wire_.host_closes(run_->connection);
+    run_.reset();
+    steps_to_live_.reset();
+    paused_until_ = {};
+    ending_.code = outcome.code;
+    word_counts_ = word_counts_ && !outcome.issued;
+    const bool doubt_to_settle = outcome.code == feeder::OutcomeCode::records_in_doubt && !outcome.issued;
+    if (outcome.code != feeder::OutcomeCode::finished && !doubt_to_settle) {
+        end_process(outcome.code);
+    } else {
+        next_run();
+    }
+}
+
+void Host::slow_disk(Duration duration) {
+    if (run_) {
+        run_->store.slow_until(context_.now + duration);
+    }
+}
+
+} // namespace linefeed::simulation

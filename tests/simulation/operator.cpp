@@ -1,0 +1,117 @@
+#include "operator.hpp"
+
+#include "protocol/printer_error.hpp"
+
+#include <algorithm>
+
+namespace linefeed::simulation {
+
+using protocol::Action;
+using protocol::MachineState;
+using simulator::PrinterModel;
+
+Operator::Operator(Context& context, Judge& judge, Line& line, Host& host, Random random)
+    : context_(context)
+    , judge_(judge)
+    , line_(line)
+    , host_(host)
+    , random_(random) {}
+
+void Operator::look_again() {
+    context_.after(random_.between(Duration{std::chrono::milliseconds{500}}, Duration{std::chrono::seconds{5}}), EventKind::operator_acts);
+}
+
+void Operator::act() {
+    if (host_.running() || done_) {
+        return;
+    }
+    if (!host_has_power_) {
+        look_again();
+        return;
+    }
+    if (host_.ending().complete) {
+        done_ = true;
+        return;
+    }
+    if (puts_printer_in_order()) {
+        look_again();
+        return;
+    }
+    host_.start(decides());
+}
+
+/// True if there was something to do or to wait for.
+bool Operator::puts_printer_in_order() {
+    const PrinterModel& printer = line_.look();
+    const auto status = printer.machine_status();
+    const auto press = [this](Action action) {
+        context_.trace.note(context_.now, "operator presses", static_cast<std::uint64_t>(action));
+        line_.act([action](PrinterModel& model, Instant now) { model.press(action, now); });
+        return true;
+    };
+    if (status.cover_open) {
+        line_.act([](PrinterModel& model, Instant now) { model.close_cover(now); });
+        return true;
+    }
+    switch (status.machine) {
+    case MachineState::standby: return press(Action::power_on);
+    case MachineState::initialising: return true;
+    case MachineState::ready:
+        if (status.nozzle == protocol::NozzleState::opens || status.nozzle == protocol::NozzleState::closes) {
+            return true;
+        }
+        if (!context_.scenario.open_nozzle) {
+            return press(Action::nozzle_open);
+        }
+        break;
+    case MachineState::printing: {
+        // linefeed takes over what it finds; another job, or a question about the last product, is seen to first.
+        const bool must_stop = host_.ending().code == feeder::OutcomeCode::busy ||
+                               host_.ending().code == feeder::OutcomeCode::did_not_stop || !host_.ending().in_doubt.empty();
+        if (must_stop) {
+            return press(Action::stop_print);
+        }
+        break;
+    }
+    case MachineState::service:
+    case MachineState::ready_to_print: break;
+    }
+    const bool needs_word = !status.error.none() && status.error.display() == protocol::ErrorDisplay::error;
+    return needs_word && random_.chance(0.7) ? press(Action::acknowledge_errors) : false;
+}
+
+cli::OperatorWord Operator::decides() {
+    cli::OperatorWord word;
+    const std::vector<RecordRange>& doubt = host_.ending().in_doubt;
+    if (doubt.empty()) {
+        return word;
+    }
+    const std::uint64_t dice = random_.below(100);
+    if (dice < context_.scenario.skips_percent) {
+        word.policy = cli::InDoubtPolicy::skip;
+        std::for_each(doubt.begin(), doubt.end(), [this](const RecordRange& range) { judge_.will_skip(range); });
+        return word;
+    }
+    if (dice < context_.scenario.skips_percent + context_.scenario.reprints_percent) {
+        word.policy = cli::InDoubtPolicy::reprint;
+        std::for_each(doubt.begin(), doubt.end(), [this](const RecordRange& range) { judge_.will_reprint(range); });
+        return word;
+    }
+    RecordNumber last = judge_.last();
+    const RecordNumber before_first = doubt.front().first().previous();
+    if (!judge_.last_is_complete() && last > before_first) {
+        if (random_.chance(0.5)) {
+            judge_.accepts_part(last);
+        } else {
+            last = last.previous();
+        }
+    }
+    if (last > doubt.back().last()) {
+        judge_.violation("in doubt although a later record is on the last product");
+    }
+    word.last_printed = std::to_string(std::max(last, before_first).value());
+    context_.trace.say(context_.now, "last product", word.last_printed);
+    return word;
+}
+
+} // namespace linefeed::simulation

@@ -1,0 +1,223 @@
+// The truth about an earlier run: taken down before anything is flushed, whatever state the printer is found in.
+#include "story.hpp"
+
+namespace linefeed::feeder {
+namespace {
+
+using State = protocol::MachineState;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+TEST(FeederEarlierRun, shouldSettleTheEarlierRunBeforeTheGrant) {
+    Story story{quick_settings(), plan_with(earlier_run())};
+    story.identify();
+    story.locate(150, 950);
+    story.expect(
+        "settle the earlier run: printed 101-150, in doubt none, unused 151-200 by mail status and total print "
+        "counter; begin run, last printed before 150");
+}
+
+TEST(FeederEarlierRun, shouldGiveTheEvidenceToTheLedger) {
+    Story story{quick_settings(), plan_with(earlier_run())};
+    story.identify();
+    story.locate(150, 950);
+    const auto& settle = std::get<Settle>(story.actions[0]);
+    EXPECT_TRUE(settle.earlier_run);
+    EXPECT_EQ(settle.evidence.mail.last_printed, RecordNumber{150});
+    EXPECT_EQ(settle.evidence.printer.total_prints, 950U);
+    EXPECT_FALSE(settle.evidence.uninterrupted);
+    EXPECT_FALSE(settle.evidence.end_message);
+}
+
+TEST(FeederEarlierRun, shouldSettleTheEarlierRunEvenWhenItMayNotStart) {
+    Story story{quick_settings(), plan_with(earlier_run())};
+    story.identify(State::ready);
+    story.locate(150, 950);
+    const std::string told = story.take();
+    EXPECT_EQ(told.find("settle the earlier run: printed 101-150"), 0U);
+    EXPECT_NE(told.find("end: not_ready"), std::string::npos);
+}
+
+TEST(FeederEarlierRun, shouldPrintNothingWhileRecordsAreInDoubt) {
+    Story story{quick_settings(), plan_with(earlier_run())};
+    story.identify();
+    story.locate(150, 5000);
+    story.expect("settle the earlier run: printed none, in doubt 101-200, unused none by no evidence; "
+                 "end: records_in_doubt (ready for print start, error 0)");
+}
+
+TEST(FeederEarlierRun, shouldGoOnWhenTheDoubtIsAboutAnotherJob) {
+    Story story{quick_settings(), plan_with(earlier_run(), false)};
+    story.identify();
+    story.locate(150, 5000);
+    story.expect("settle the earlier run: printed none, in doubt 101-200, unused none by no evidence; "
+                 "begin run, last printed before 150");
+}
+
+TEST(FeederEarlierRun, shouldWaitForAPrintInProgress) {
+    Story story{quick_settings(), plan_with(earlier_run())};
+    story.identify();
+    story.sm(0, 150, 0, false);
+    story.expect("?SM");
+    story.sm(0, 150, 0, false);
+    story.expect("");
+    story.wait(milliseconds{20});
+    story.expect("?SM");
+    story.sm(0, 150, 0, true);
+    story.expect("?CC");
+}
+
+TEST(FeederEarlierRun, shouldDoubtAPrintThatNeverFinishes) {
+    Story story{quick_settings(), plan_with(earlier_run())};
+    story.identify();
+    story.sm(0, 150, 0, false);
+    story.sm(0, 150, 0, false);
+    story.wait(seconds{2});
+    story.expect("?SM; ?SM");
+    story.sm(0, 150, 0, false);
+    story.expect("?CC");
+    story.cc(950);
+    EXPECT_EQ(story.take().find("settle the earlier run: printed 101-149, in doubt 150-150, unused 151-200"), 0U);
+}
+
+TEST(FeederEarlierRun, shouldHaltAPrinterThatPrintsTheEarlierRunAndFlushNothing) {
+    Story story{quick_settings(), plan_with(earlier_run())};
+    story.identify(State::printing);
+    story.sm(50, 149, 200, false); // it prints: nobody waits for the end of a print
+    story.sm(50, 149, 200, false);
+    story.expect("?SM; ?CC");
+    story.cc(949);
+    story.expect(
+        "notice: the printer was still printing records of the earlier run: it is stopped to learn where it is; "
+        "!ST; ?RS");
+    story.rs(State::printing);
+    story.expect("");
+    story.wait(milliseconds{20});
+    story.expect("?RS");
+    story.rs(State::ready_to_print);
+    story.expect("?SM");
+    story.sm(0, 152, 0);
+    story.sm(0, 152, 0);
+    story.expect("?SM; ?CC");
+    story.cc(952);
+    story.expect(
+        "settle the earlier run: printed 101-152, in doubt none, unused 153-200 by mail status and total print "
+        "counter; begin run, last printed before 152");
+}
+
+TEST(FeederEarlierRun, shouldHaltAPrinterThatWasStartedAndHasNotPrintedYet) {
+    OpenRun run = earlier_run();
+    run.printed_through = RecordNumber{0};
+    run.last_printed_before = RecordNumber{77};
+    run.issued_through = RecordNumber{50};
+    Story story{quick_settings(), plan_with(run)};
+    story.identify(State::printing);
+    story.locate(77, 800);
+    EXPECT_EQ(story.phase(), Phase::halting);
+}
+
+TEST(FeederEarlierRun, shouldLeaveAPrinterAloneThatPrintsSomethingElse) {
+    const auto outcome = [](const FeederPlan& plan, std::uint32_t last_printed, const std::string& serial = "S1") {
+        Story story{quick_settings(), plan};
+        story.start();
+        story.rs(State::printing);
+        story.vs(serial);
+        story.jl();
+        story.actions.clear();
+        story.locate(last_printed, 950);
+        return story.take();
+    };
+    const std::string busy = "end: busy (printing, error 0)";
+    EXPECT_EQ(outcome({}, 150), busy) << "no earlier run";
+    EXPECT_EQ(outcome(plan_with(earlier_run()), 99), busy) << "before what is confirmed";
+    EXPECT_EQ(outcome(plan_with(earlier_run()), 201), busy) << "never issued";
+    EXPECT_EQ(outcome(plan_with(earlier_run()), 0), busy) << "not left over: 100 are confirmed";
+    EXPECT_EQ(outcome(plan_with(earlier_run()), 150, "S2"), busy) << "the numbers agree, but it is another printer";
+    OpenRun later = earlier_run();
+    later.first = RecordNumber{50};
+    later.printed_through = RecordNumber{49};
+    EXPECT_EQ(outcome(plan_with(later), 49), busy) << "neither ours nor the number before";
+}
+
+TEST(FeederEarlierRun, shouldGiveUpAPrinterThatDoesNotHalt) {
+    Story story = reach(Phase::halting);
+    story.rs(State::printing);
+    story.wait(seconds{10});
+    story.expect("end: did_not_stop (printing, error 0)");
+}
+
+// Records of the earlier run may still lie in the FIFO of a printer that stands: somebody could start it by hand.
+
+TEST(FeederEarlierRun, shouldSettleLoadedRecordsOnlyWhenTheFlushComesNext) {
+    Story story{quick_settings(), plan_with(earlier_run())};
+    story.identify(State::ready_to_print, raw_error(5043));
+    story.sm(9, 150, 200);
+    story.sm(9, 150, 200);
+    story.take();
+    story.cc(950);
+    story.expect("notice: acknowledged 5043 (mailing buffer empty), error from RIP; !EQ; ?RS");
+    story.rs(State::ready_to_print);
+    story.expect("?SM"); // time has passed: where is it now?
+    story.sm(8, 151, 200);
+    story.sm(8, 151, 200);
+    story.expect("?SM; ?CC");
+    story.cc(951);
+    story.expect(
+        "settle the earlier run: printed 101-151, in doubt none, unused 152-200 by mail status and total print "
+        "counter; begin run, last printed before 151");
+}
+
+TEST(FeederEarlierRun, shouldLeaveLoadedRecordsOpenWhenItMayNotStart) {
+    Story story{quick_settings(), plan_with(earlier_run())};
+    story.identify(State::ready);
+    story.sm(9, 150, 200);
+    story.sm(9, 150, 200);
+    story.take();
+    story.cc(950);
+    story.expect("end: not_ready (ready for action, error 0)"); // the next start finds the truth
+}
+
+TEST(FeederEarlierRun, shouldFlushLoadedRecordsInDoubtOnceTheLedgerKnows) {
+    Story story{quick_settings(), plan_with(earlier_run())};
+    story.identify();
+    story.sm(9, 150, 200);
+    story.sm(9, 150, 200);
+    story.take();
+    story.cc(5000);
+    story.expect("settle the earlier run: printed none, in doubt 101-200, unused none by no evidence");
+    story.settled();
+    story.expect("!FF; end: records_in_doubt (ready for print start, error 0)");
+}
+
+TEST(FeederEarlierRun, shouldSettleTheEarlierRunOnlyOnce) {
+    Story story{quick_settings(), plan_with(earlier_run())};
+    story.identify(State::ready_to_print, raw_error(5043));
+    story.locate(150, 950);
+    EXPECT_NE(story.take().find("settle the earlier run"), std::string::npos);
+    story.rs(State::ready_to_print);
+    story.expect("begin run, last printed before 150");
+}
+
+TEST(FeederEarlierRun, shouldLookAgainWhenSomebodyStartsThePrinterMeanwhile) {
+    Story story = reach(Phase::acknowledging);
+    story.rs(State::printing);
+    story.expect("?SM");
+    story.locate(78, 1001);
+    story.expect("end: busy (printing, error 0)");
+
+    story = reach(Phase::opening_nozzle);
+    story.rs(State::printing);
+    story.expect("?SM");
+}
+
+TEST(FeederEarlierRun, shouldFindRecordsThatWerePrintedByHandBeforeTheFlush) {
+    Story story = reach(Phase::flushing);
+    story.sm(1, 102, 0);
+    story.expect("!ST; ?RS");
+    story.judge(1, 102, true, 1002);
+    story.expect("settle: printed 101-102, in doubt none, unused 103-110 by mail status and total print counter; !FF; "
+                 "end: busy (ready for print start, error 0)");
+}
+
+} // namespace
+} // namespace linefeed::feeder

@@ -1,0 +1,273 @@
+// What ends a run early, in every phase: for each, one table of what the feeder does then; and that nothing follows.
+#include "story.hpp"
+
+#include <map>
+
+namespace linefeed::feeder {
+namespace {
+
+using State = protocol::MachineState;
+using protocol::Parameter;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+/// For each phase, the story that an event causes there.
+template <typename Event>
+void expect_in_every_phase(const std::map<Phase, std::string>& stories, const Event& event) {
+    for (const Phase phase : all_phases) {
+        SCOPED_TRACE(testing::Message() << "phase " << static_cast<int>(phase));
+        Story story = reach(phase);
+        event(story);
+        story.expect(stories.at(phase));
+    }
+}
+
+const std::string stop_and_ask = "!ST; ?RS";
+const std::string unused_all = "settle: printed none, in doubt none, unused none by nothing was issued; ";
+
+std::string ended(OutcomeCode code, const std::string& state = "ready for print start, error 0") {
+    return "end: " + std::string{to_string(code)} + " (" + state + ")";
+}
+
+TEST(FeederEveryPhase, shouldStopOnRequestInEveryPhase) {
+    const auto end = [](const std::string& state) { return ended(OutcomeCode::stop_requested, state); };
+    expect_in_every_phase(
+        {
+            {Phase::idle, end("standby, error 0")},
+            {Phase::identifying, end("standby, error 0")},
+            {Phase::locating, ended(OutcomeCode::stop_requested)},
+            {Phase::taking_over, "!ST; " + end("printing, error 0")},
+            {Phase::halting, end("printing, error 0")},
+            {Phase::opening_nozzle, end("ready for action, error 0")},
+            {Phase::acknowledging, end("ready for print start, error " + std::to_string(end_message))},
+            {Phase::granting, ended(OutcomeCode::stop_requested)},
+            {Phase::flushing, stop_and_ask},
+            {Phase::setting_stop, stop_and_ask},
+            {Phase::loading, stop_and_ask},
+            {Phase::verifying, stop_and_ask},
+            {Phase::starting, stop_and_ask},
+            {Phase::printing, stop_and_ask},
+            {Phase::stopping, ""},
+            {Phase::judging, ""},
+            {Phase::finishing, ""},
+            {Phase::clearing, ""},
+            {Phase::ended, ""},
+        },
+        [](Story& story) { story.stop(); });
+}
+
+TEST(FeederEveryPhase, shouldEndWhenTheLinkIsLostInEveryPhase) {
+    const auto end = [](const std::string& state) { return ended(OutcomeCode::link_lost, state); };
+    const std::string sent = ended(OutcomeCode::link_lost, "printing, error 0");
+    expect_in_every_phase(
+        {
+            {Phase::idle, end("standby, error 0")},
+            {Phase::identifying, end("standby, error 0")},
+            {Phase::locating, ended(OutcomeCode::link_lost)},
+            {Phase::taking_over, sent},
+            {Phase::halting, sent},
+            {Phase::opening_nozzle, end("ready for action, error 0")},
+            {Phase::acknowledging, end("ready for print start, error " + std::to_string(end_message))},
+            {Phase::granting, ended(OutcomeCode::link_lost)},
+            {Phase::flushing, ended(OutcomeCode::link_lost)},                  // the flush may not have arrived
+            {Phase::setting_stop, unused_all + ended(OutcomeCode::link_lost)}, // granted, but nothing went out
+            {Phase::loading, unused_all + ended(OutcomeCode::link_lost)},
+            {Phase::verifying, ended(OutcomeCode::link_lost)}, // the next start asks the printer about these
+            {Phase::starting, ended(OutcomeCode::link_lost)},
+            {Phase::printing, sent},
+            {Phase::stopping, sent},
+            {Phase::judging, ended(OutcomeCode::link_lost)},
+            {Phase::finishing,
+             ended(OutcomeCode::finished, "ready for print start, error " + std::to_string(end_message))},
+            {Phase::clearing, ended(OutcomeCode::link_lost)},
+            {Phase::ended, ""},
+        },
+        [](Story& story) { story.link_lost(); });
+}
+
+TEST(FeederEveryPhase, shouldSayWhetherRecordsMayHaveGoneOut) {
+    for (const Phase phase : all_phases) {
+        Story story = reach(phase);
+        if (phase == Phase::ended) {
+            continue;
+        }
+        story.link_lost();
+        const auto& end = std::get<End>(story.actions[story.actions.size() - 1]);
+        EXPECT_EQ(end.outcome.issued, phase >= Phase::verifying) << static_cast<int>(phase);
+    }
+}
+
+TEST(FeederEveryPhase, shouldStopWhenTheLedgerFailsInEveryPhase) {
+    const auto end = [](const std::string& state) { return ended(OutcomeCode::storage_failed, state); };
+    expect_in_every_phase(
+        {
+            {Phase::idle, end("standby, error 0")},
+            {Phase::identifying, end("standby, error 0")},
+            {Phase::locating, ended(OutcomeCode::storage_failed)},
+            {Phase::taking_over, "!ST; " + end("printing, error 0")},
+            {Phase::halting, end("printing, error 0")},
+            {Phase::opening_nozzle, end("ready for action, error 0")},
+            {Phase::acknowledging, end("ready for print start, error " + std::to_string(end_message))},
+            {Phase::granting, ended(OutcomeCode::storage_failed)},
+            {Phase::flushing, stop_and_ask},
+            {Phase::setting_stop, stop_and_ask},
+            {Phase::loading, stop_and_ask},
+            {Phase::verifying, stop_and_ask},
+            {Phase::starting, stop_and_ask},
+            {Phase::printing, stop_and_ask},
+            {Phase::stopping, ""},
+            {Phase::judging, ""},
+            {Phase::finishing, end("ready for print start, error " + std::to_string(end_message))},
+            {Phase::clearing, ended(OutcomeCode::storage_failed)}, // no flush: the truth is not in the ledger
+            {Phase::ended, ""},
+        },
+        [](Story& story) { story.storage_failed(); });
+}
+
+TEST(FeederEveryPhase, shouldNeitherFlushNorAcknowledgeWhatTheLedgerDoesNotKnow) {
+    Story story = reach(Phase::verifying);
+    story.storage_failed();
+    story.take();
+    story.judge(3, 77, true, 1000);
+    story.expect("settle: printed none, in doubt none, unused 101-104 by mail status; " +
+                 ended(OutcomeCode::storage_failed));
+
+    story = reach(Phase::stopping); // it fails on the way
+    story.storage_failed();
+    story.judge(0, 104, true, 1004, end_message);
+    story.expect("settle: printed 101-104, in doubt none, unused none by mail status and total print counter; " +
+                 ended(OutcomeCode::storage_failed, "ready for print start, error " + std::to_string(end_message)));
+
+    story = reach(Phase::printing);
+    story.sm(1, 104, 110);
+    story.sm(1, 108, 110);
+    story.storage_failed();
+    story.judge(0, 110, true, 1010, end_message);
+    EXPECT_EQ(story.take().find("!EQ"), std::string::npos) << "all printed, but nobody could write it down";
+    EXPECT_EQ(story.phase(), Phase::ended);
+}
+
+TEST(FeederEveryPhase, shouldEndWhenThePrinterDoesNotSayItsStateOrPlaceInEveryPhase) {
+    for (const Parameter what : {Parameter::RS, Parameter::SM}) {
+        const auto end = [](const std::string& state) { return ended(OutcomeCode::no_answer, state); };
+        expect_in_every_phase(
+            {
+                {Phase::idle, end("standby, error 0")},
+                {Phase::identifying, end("standby, error 0")},
+                {Phase::locating, ended(OutcomeCode::no_answer)},
+                {Phase::taking_over, end("printing, error 0")},
+                {Phase::halting, end("printing, error 0")},
+                {Phase::opening_nozzle, end("ready for action, error 0")},
+                {Phase::acknowledging, end("ready for print start, error " + std::to_string(end_message))},
+                {Phase::granting, ended(OutcomeCode::no_answer)},
+                {Phase::flushing, ended(OutcomeCode::no_answer)},
+                {Phase::setting_stop, unused_all + ended(OutcomeCode::no_answer)},
+                {Phase::loading, unused_all + ended(OutcomeCode::no_answer)},
+                {Phase::verifying, "!ST; " + ended(OutcomeCode::no_answer)}, // it may still listen
+                {Phase::starting, "!ST; " + ended(OutcomeCode::no_answer)},
+                {Phase::printing, "!ST; " + end("printing, error 0")},
+                {Phase::stopping, "!ST; " + end("printing, error 0")},
+                {Phase::judging, "!ST; " + ended(OutcomeCode::no_answer)},
+                {Phase::finishing,
+                 ended(OutcomeCode::finished, "ready for print start, error " + std::to_string(end_message))},
+                {Phase::clearing, "!ST; " + ended(OutcomeCode::no_answer)},
+                {Phase::ended, ""},
+            },
+            [what](Story& story) { story.no_answer(what); });
+    }
+}
+
+TEST(FeederEveryPhase, shouldGoOnWithoutIdentityOrCounterInEveryPhase) {
+    for (const Phase phase : all_phases) {
+        for (const Parameter what : {Parameter::VS, Parameter::JL}) {
+            Story story = reach(phase);
+            story.no_answer(what);
+            story.expect("");
+            EXPECT_EQ(story.phase(), phase);
+        }
+    }
+    Story story = reach(Phase::judging);
+    story.rs(State::ready_to_print);
+    story.sm(0, 104, 0);
+    story.sm(0, 104, 0);
+    story.take();
+    story.no_answer(Parameter::CC);
+    story.settled();
+    story.expect("settle: printed 101-104, in doubt none, unused none by mail status; !FF; " +
+                 ended(OutcomeCode::stop_requested));
+}
+
+// The deadline of every phase.
+
+TEST(FeederEveryPhase, shouldKeepTheDeadlineOfEveryPhase) {
+    struct Deadline {
+        Duration after;
+        std::string story;
+    };
+    const std::map<Phase, Deadline> deadlines{
+        {Phase::halting, {seconds{10}, ended(OutcomeCode::did_not_stop, "printing, error 0")}},
+        {Phase::opening_nozzle, {seconds{120}, ended(OutcomeCode::not_ready, "ready for action, error 0")}},
+        {Phase::acknowledging,
+         {seconds{2},
+          ended(OutcomeCode::error_pending, "ready for print start, error " + std::to_string(end_message))}},
+        {Phase::flushing, {seconds{2}, stop_and_ask}},
+        {Phase::verifying, {seconds{5}, stop_and_ask}},
+        {Phase::starting, {seconds{15}, stop_and_ask}},
+        {Phase::stopping, {seconds{10}, ended(OutcomeCode::did_not_stop, "printing, error 0")}},
+        {Phase::locating, {seconds{2}, ""}},
+        {Phase::judging, {seconds{2}, ""}},
+        {Phase::taking_over, {seconds{2}, ""}},
+        {Phase::clearing, {seconds{10}, ended(OutcomeCode::stop_requested)}},
+        {Phase::finishing,
+         {seconds{2}, ended(OutcomeCode::finished, "ready for print start, error " + std::to_string(end_message))}},
+    };
+    for (const Phase phase : all_phases) {
+        SCOPED_TRACE(testing::Message() << "phase " << static_cast<int>(phase));
+        Story story = reach(phase);
+        const auto deadline = deadlines.find(phase);
+        if (deadline == deadlines.end()) {
+            if (phase != Phase::printing) {
+                EXPECT_EQ(story.feeder.next_wake(), std::nullopt) << "it waits for a fact, however long that takes";
+            }
+            continue;
+        }
+        const Instant entered = story.now;
+        ASSERT_EQ(story.feeder.next_wake(), entered + deadline->second.after);
+        story.wait(deadline->second.after - milliseconds{1});
+        story.expect("");
+        story.wait(milliseconds{1});
+        story.expect(deadline->second.story);
+        EXPECT_NE(story.feeder.next_wake(), story.now) << "it would wake up for ever";
+    }
+}
+
+TEST(FeederEveryPhase, shouldDoNothingAfterTheEnd) {
+    for (const Phase phase : all_phases) {
+        Story story = reach(phase);
+        story.link_lost();
+        story.take();
+        story.rs(State::printing);
+        story.rs(State::ready_to_print, end_message);
+        story.sm(1, 104, 110);
+        story.cc(1004);
+        story.vs("S2");
+        story.jl();
+        story.granted();
+        story.refused(OutcomeCode::nothing_to_print);
+        story.durable(110);
+        story.supplied(110);
+        story.settled();
+        story.storage_failed();
+        story.stop();
+        story.wait(seconds{1000});
+        for (const Parameter what : {Parameter::RS, Parameter::SM, Parameter::VS, Parameter::JL, Parameter::CC}) {
+            story.no_answer(what);
+        }
+        story.link_lost();
+        story.expect("");
+        EXPECT_EQ(story.feeder.next_wake(), std::nullopt);
+    }
+}
+
+} // namespace
+} // namespace linefeed::feeder

@@ -1,0 +1,232 @@
+// From the grant to the first print: flush, stop point with read-back, first fill, start.
+#include "story.hpp"
+
+namespace linefeed::feeder {
+namespace {
+
+using State = protocol::MachineState;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+TEST(FeederFilling, shouldFlushOnlyWhatTheLedgerHasGranted) {
+    Story story = reach(Phase::granting);
+    story.rs(State::ready_to_print);
+    story.sm(0, 77, 0);
+    story.supplied(110);
+    story.durable(110);
+    story.settled();
+    story.expect("");
+    EXPECT_EQ(story.feeder.next_wake(), std::nullopt);
+    story.granted();
+    story.expect("!FF; ?SM");
+}
+
+TEST(FeederFilling, shouldWaitUntilTheFifoIsEmpty) {
+    Story story = reach(Phase::flushing);
+    story.sm(3, 77, 0); // one inquiry old
+    story.expect("");
+    story.wait(milliseconds{20});
+    story.expect("?SM");
+    story.sm(0, 77, 0);
+    story.expect("=CM 110; ?SM");
+}
+
+TEST(FeederFilling, shouldStopWhenTheFifoDoesNotBecomeEmpty) {
+    Story story = reach(Phase::flushing);
+    story.sm(3, 77, 0);
+    story.wait(seconds{2});
+    story.expect("!ST; ?RS");
+    story.judge(3, 77, true, 1000);
+    story.expect("settle: printed none, in doubt none, unused none by nothing was issued; !FF; "
+                 "end: fifo_not_flushed (ready for print start, error 0)");
+}
+
+TEST(FeederFilling, shouldNotGoOnWhenThePrinterHasPrintedSinceTheTruthWasTakenDown) {
+    Story story = reach(Phase::flushing);
+    story.sm(0, 78, 0);
+    story.expect("!ST; ?RS");
+    story.judge(0, 78, true, 1001);
+    story.expect("settle: printed none, in doubt none, unused none by nothing was issued; "
+                 "end: busy (ready for print start, error 0)");
+
+    story = reach(Phase::flushing);
+    story.sm(0, 0, 0); // a firmware that forgets the number with the FIFO
+    story.expect("=CM 110; ?SM");
+}
+
+TEST(FeederFilling, shouldBelieveOnlyTheSecondAnswerAboutTheStopPoint) {
+    Story story = reach(Phase::setting_stop);
+    story.sm(0, 77, 0);
+    story.expect("?SM");
+    story.sm(0, 77, 110);
+    EXPECT_EQ(story.phase(), Phase::loading);
+}
+
+TEST(FeederFilling, shouldGoOnWithoutAStopPointAndTryAgainWhilePrinting) {
+    Story story = reach(Phase::setting_stop);
+    story.sm(0, 77, 0);
+    story.sm(0, 77, 0);
+    story.expect("?SM");
+    EXPECT_EQ(story.phase(), Phase::loading);
+    story.supplied(110);
+    story.sm(3, 77, 0);
+    story.take();
+    story.rs(State::printing);
+    story.expect("notice: printing; =CM 110; ?SM");
+}
+
+TEST(FeederFilling, shouldWaitForTheWholeFirstFill) {
+    Story story = reach(Phase::loading);
+    story.supplied(103);
+    story.durable(110);
+    story.expect("");
+    EXPECT_EQ(story.feeder.next_wake(), std::nullopt);
+    story.supplied(104);
+    story.expect("=MR 101-104; ?SM");
+}
+
+TEST(FeederFilling, shouldAskForTheIntentsOfTheFirstFill) {
+    Story story;
+    story.arm_to_grant();
+    story.granted(101, 200, 102);
+    story.sm(0, 77, 0);
+    story.take();
+    story.sm(0, 77, 200);
+    story.expect("intent through 116");
+    story.supplied(200);
+    story.expect("");
+    story.durable(103);
+    story.expect("");
+    story.durable(116);
+    story.expect("=MR 101-104; ?SM");
+}
+
+TEST(FeederFilling, shouldStartALongFifoWithTheRecordsAtHand) {
+    Story story;
+    story.reported_depth = 2000;
+    story.arm_to_grant();
+    story.granted(1, 100000, 512);
+    story.sm(0, 77, 0);
+    story.take();
+    story.sm(0, 77, 100000);
+    story.expect("intent through 8000");
+    story.supplied(255);
+    story.expect("");
+    story.supplied(512);
+    story.expect("=MR 1-512; ?SM");
+}
+
+TEST(FeederFilling, shouldBelieveOnlyTheSecondAnswerAboutTheFill) {
+    Story story = reach(Phase::verifying);
+    story.sm(0, 77, 110); // one inquiry old
+    story.expect("?SM");
+    story.sm(3, 77, 110);
+    story.expect("!GO; ?RS");
+}
+
+TEST(FeederFilling, shouldSayWhenThePrinterHoldsAnotherNumberOfEntries) {
+    Story story = reach(Phase::verifying);
+    story.sm(4, 77, 110);
+    story.sm(4, 77, 110);
+    story.expect("?SM; notice: the printer reports another number of FIFO entries than was sent; !GO; ?RS");
+}
+
+TEST(FeederFilling, shouldStopWhenThePrinterTakesNoRecords) {
+    Story story = reach(Phase::verifying);
+    story.sm(0, 77, 110);
+    story.sm(0, 77, 110);
+    story.expect("?SM");
+    for (int times = 0; times < 3; ++times) {
+        story.wait(milliseconds{20});
+        story.sm(0, 77, 110);
+        story.expect("?SM");
+    }
+    story.wait(seconds{5});
+    EXPECT_EQ(story.take().find("!ST; ?RS"), 0U);
+    story.judge(0, 77, true, 1000);
+    story.expect("settle: printed none, in doubt none, unused 101-104 by mail status; !FF; "
+                 "end: records_not_taken (ready for print start, error 0)");
+}
+
+TEST(FeederFilling, shouldStartWithASingleRecordThatIsLoadedAlready) {
+    Story story;
+    story.arm_to_grant();
+    story.granted(101, 101, 101);
+    story.sm(0, 77, 0);
+    story.sm(0, 77, 101);
+    story.actions.clear();
+    story.supplied(101);
+    story.expect("=MR 101-101; ?SM");
+    story.sm(0, 77, 101);
+    story.expect("!GO; ?RS");
+}
+
+TEST(FeederFilling, shouldWaitForTheStart) {
+    Story story = reach(Phase::starting);
+    story.rs(State::ready_to_print);
+    story.expect("");
+    story.wait(milliseconds{20});
+    story.expect("?RS");
+    story.rs(State::ready_to_print, raw_error(10202, 1));
+    EXPECT_EQ(story.take().find("notice: the printer reports 10202"), 0U) << "a warning is no reason to end";
+    story.rs(State::ready_to_print, raw_error(10202, 1));
+    story.expect("");
+    story.wait(milliseconds{20});
+    story.rs(State::printing, raw_error(10202, 1));
+    story.expect("?RS; notice: printing; ?SM");
+}
+
+TEST(FeederFilling, shouldGiveUpAPrinterThatDoesNotStart) {
+    Story story = reach(Phase::starting);
+    story.rs(State::ready_to_print);
+    story.wait(seconds{15});
+    story.expect("!ST; ?RS");
+    story.judge(3, 77, true, 1000);
+    story.expect("settle: printed none, in doubt none, unused 101-104 by mail status; !FF; "
+                 "end: did_not_start (ready for print start, error 0)");
+}
+
+TEST(FeederFilling, shouldFindTheTruthWhenTheStartEndsInAnError) {
+    Story story = reach(Phase::starting);
+    story.rs(State::ready_to_print, raw_error(1018));
+    story.expect("?RS");
+    story.rs(State::ready_to_print, raw_error(1018));
+    story.sm(0, 77, 0);
+    story.sm(0, 77, 0);
+    story.expect("?SM; ?SM; ?CC");
+    story.cc(1000);
+    story.settled();
+    story.expect(
+        "settle: printed none, in doubt none, unused 101-104 by mail status; !FF; end: printer_error (ready for print "
+        "start, error " +
+        std::to_string(raw_error(1018)) + ")");
+}
+
+TEST(FeederFilling, shouldFinishAShortRunThatIsOverBeforeAnyoneLooked) {
+    Story story;
+    story.arm_to_grant();
+    story.granted(101, 102, 102);
+    story.sm(0, 77, 0);
+    story.sm(0, 77, 102);
+    story.supplied(102);
+    story.sm(1, 77, 102);
+    story.take();
+    story.rs(State::ready_to_print, end_message);
+    story.rs(State::ready_to_print, end_message);
+    story.sm(0, 102, 0);
+    story.sm(0, 102, 0);
+    story.take();
+    story.cc(1002);
+    story.expect("settle: printed 101-102, in doubt none, unused none by end message 1223; !EQ; ?RS");
+}
+
+using FeederDeathTest = testing::Test;
+
+TEST(FeederDeathTest, shouldStartOnlyOnce) {
+    Story story;
+    story.start();
+    EXPECT_DEATH(story.start(), "idle");
+}
+
+} // namespace
+} // namespace linefeed::feeder

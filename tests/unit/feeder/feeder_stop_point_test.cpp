@@ -1,0 +1,272 @@
+// The stop point in all its ways: kept, kept late, ignored, gone, and somebody else's.
+#include "story.hpp"
+
+namespace linefeed::feeder {
+namespace {
+
+using State = protocol::MachineState;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+TEST(FeederStopPoint, shouldStopBehindTheLastRecordWhenThePrinterKeepsItsStopPointButPrintsOn) {
+    Story story = reach(Phase::printing);
+    story.sm(1, 104, 110);
+    story.sm(1, 108, 110);
+    story.take();
+    story.sm(0, 110, 110);
+    story.expect("printed through 110; ?RS");
+    story.sm(0, 110, 110);
+    story.expect(""); // asked already
+    story.rs(State::printing);
+    story.now += milliseconds{501};
+    story.sm(0, 110, 110);
+    story.expect("!ST; ?RS");
+    story.judge(0, 110, true, 1010);
+    story.expect("settle: printed none, in doubt none, unused none by nothing was issued; "
+                 "end: finished (ready for print start, error 0)");
+}
+
+/// Prints up to the answer in which the stop point is missing for the first time; the printer ignored it before the
+/// start.
+Story printing_without_stop_point() {
+    Story story = reach(Phase::setting_stop);
+    story.sm(0, 77, 0);
+    story.sm(0, 77, 0);
+    story.supplied(110);
+    story.sm(3, 77, 0);
+    story.rs(State::printing);
+    story.actions.clear();
+    return story;
+}
+
+TEST(FeederStopPoint, shouldSetTheStopPointAgainForAPrinterThatKeepsItOnlyWhilePrinting) {
+    Story story = printing_without_stop_point();
+    story.sm(3, 77, 0); // one inquiry old
+    story.expect("");
+    story.sm(3, 77, 110);
+    story.expect("");
+    story.sm(2, 101, 110);
+    story.expect("printed through 101; =MR 105-105");
+    story.sm(1, 104, 110);
+    story.sm(1, 108, 110);
+    story.sm(0, 110, 0);
+    story.take();
+    story.rs(State::ready_to_print, end_message);
+    story.judge(0, 110, true, 1010, end_message);
+    EXPECT_NE(story.take().find("by end message 1223; !EQ"), std::string::npos);
+}
+
+TEST(FeederStopPoint, shouldQueueAnEndMarkerForAPrinterThatIgnoresTheStopPoint) {
+    Story story = printing_without_stop_point();
+    story.sm(3, 77, 0);
+    story.expect("");
+    story.sm(3, 77, 0);
+    story.expect("=CM 110");
+    story.sm(3, 77, 0);
+    story.sm(3, 77, 0);
+    story.expect("=CM 110");
+    story.sm(3, 77, 0);
+    story.expect("");
+    story.sm(3, 77, 0);
+    EXPECT_EQ(story.take().find("notice: the printer does not keep the stop point"), 0U);
+    story.sm(3, 77, 0);
+    story.expect("");
+    story.sm(1, 103, 0);
+    story.expect("printed through 103; =MR 105-107");
+    story.sm(1, 105, 0);
+    story.expect("printed through 105; =MR 108-109");
+    story.sm(1, 106, 0);
+    story.expect("printed through 106; =MR 110-110"); // full: the marker must wait for room
+    story.sm(2, 107, 0);
+    story.expect("printed through 107; end marker 111");
+    story.sm(2, 109, 0);
+    story.expect("printed through 109");
+    story.sm(1, 110, 0);
+    story.expect("printed through 110; !ST; ?RS");
+    story.judge(0, 110, true, 1010);
+    story.expect("settle: printed none, in doubt none, unused none by nothing was issued; "
+                 "end: finished (ready for print start, error 0)");
+}
+
+Story printing_with_marker() {
+    Story story = printing_without_stop_point();
+    for (int answers = 0; answers < 6; ++answers) {
+        story.sm(3, 77, 0);
+    }
+    story.sm(1, 104, 0);
+    story.sm(1, 108, 0);
+    EXPECT_NE(story.take().find("end marker 111"), std::string::npos);
+    return story;
+}
+
+TEST(FeederStopPoint, shouldTakeAPrintedEndMarkerForTheProofOfTheLastRecord) {
+    Story story = printing_with_marker();
+    story.sm(0, 111, 0, false);
+    story.expect("printed through 110; !ST; ?RS");
+    story.rs(State::ready_to_print);
+    story.rs(State::ready_to_print);
+    story.sm(0, 111, 0, false);
+    story.expect("?RS; ?SM; ?SM");
+    story.sm(0, 111, 0, false);
+    story.expect(""); // the blank product is given the time to be finished
+    story.wait(milliseconds{20});
+    story.sm(0, 111, 0);
+    story.expect("?SM; ?CC");
+}
+
+TEST(FeederStopPoint, shouldFinishWithAPrintedEndMarker) {
+    Story story = printing_with_marker();
+    story.sm(0, 111, 0);
+    story.expect("printed through 110; !ST; ?RS");
+    story.judge(0, 111, true, 1011);
+    story.expect("settle: printed none, in doubt none, unused none by nothing was issued; "
+                 "end: finished (ready for print start, error 0)");
+}
+
+TEST(FeederStopPoint, shouldFindTheEndMarkerPrintedOnlyWhenJudging) {
+    Story story = printing_with_marker();
+    story.rs(State::ready_to_print, raw_error(5043));
+    story.judge(0, 111, true, 1011, raw_error(5043));
+    story.expect(
+        "settle: printed 109-110, in doubt none, unused none by mail status; end: finished (ready for print start, "
+        "error " +
+        std::to_string(raw_error(5043)) + ")");
+}
+
+TEST(FeederStopPoint, shouldNotTakeAnyNumberBehindTheLastForItsEndMarker) {
+    Story story = printing_with_marker();
+    story.sm(0, 112, 0);
+    story.expect("!ST; ?RS");
+    story.judge(0, 112, true, 1012);
+    story.expect("settle: printed none, in doubt 109-110, unused none by no evidence; "
+                 "!FF; end: impossible_report (ready for print start, error 0)");
+}
+
+TEST(FeederStopPoint, shouldQueueNoEndMarkerBehindTheLargestNumber) {
+    constexpr std::uint32_t max = 4294967295U;
+    Story story;
+    story.arm_to_grant();
+    story.granted(max - 1, max, max);
+    story.sm(0, 77, 0);
+    story.sm(0, 77, 0);
+    story.sm(0, 77, 0);
+    story.supplied(max);
+    story.sm(1, 77, 0);
+    story.rs(State::printing);
+    story.take();
+    for (int answers = 0; answers < 7; ++answers) {
+        story.sm(1, 77, 0);
+    }
+    const std::string told = story.take();
+    EXPECT_NE(told.find("does not keep the stop point"), std::string::npos);
+    EXPECT_EQ(told.find("; end marker"), std::string::npos);
+    story.sm(0, max, 0);
+    story.expect("printed through 4294967295; !ST; ?RS");
+}
+
+TEST(FeederStopPoint, shouldStopAtOnceBehindTheLastRecordWhileTheStopPointIsUncertain) {
+    Story story = printing_without_stop_point();
+    story.sm(3, 77, 0);
+    story.sm(1, 104, 0);
+    story.sm(1, 108, 0);
+    story.take();
+    story.sm(0, 110, 0);
+    story.expect("printed through 110; =CM 110; !ST; ?RS");
+}
+
+TEST(FeederStopPoint, shouldSuspectAStopWhenTheStopPointVanishes) {
+    Story story = reach(Phase::printing);
+    story.sm(1, 103, 0);
+    story.expect("?RS"); // no refill into a FIFO that the stop has emptied, and no number is believed
+    story.sm(1, 104, 0);
+    story.supplied(110);
+    story.durable(110);
+    story.expect("");
+    story.rs(State::ready_to_print);
+    story.expect("?RS");
+    story.judge(0, 104, true, 1004);
+    story.expect("settle: printed 101-104, in doubt none, unused none by mail status and total print counter; "
+                 "!FF; end: stopped_at_printer (ready for print start, error 0)");
+}
+
+TEST(FeederStopPoint, shouldForgetTheSuspicionWhenTheStopPointIsBack) {
+    Story story = reach(Phase::printing);
+    story.sm(1, 103, 0);
+    story.sm(1, 103, 110);
+    story.expect("?RS; printed through 103; =MR 105-107");
+    story.rs(State::printing);
+    story.expect("");
+    EXPECT_EQ(story.phase(), Phase::printing);
+}
+
+TEST(FeederStopPoint, shouldSetAStopPointAgainThatWasKeptOnlyBeforeTheStart) {
+    Story story = reach(Phase::starting);
+    story.rs(State::printing);
+    story.take();
+    story.sm(3, 77, 0);
+    story.expect("?RS");
+    story.rs(State::printing);
+    story.expect("");
+    story.sm(3, 77, 0);
+    story.expect("");
+    story.sm(2, 101, 0);
+    story.expect("printed through 101; =CM 110; =MR 105-105");
+    story.sm(2, 102, 110);
+    story.expect("printed through 102; =MR 106-106");
+}
+
+TEST(FeederStopPoint, shouldStopAPrinterThatWasStoppedAndStartedAgainBehindOurBack) {
+    Story story = reach(Phase::printing);
+    story.sm(1, 103, 110);
+    story.expect("printed through 103; =MR 105-107");
+    // A stop has thrown 104 away; 105-107 arrived behind it; then somebody started the printer again.
+    story.sm(1, 105, 0);
+    story.expect("?RS");
+    story.rs(State::printing);
+    story.expect("");
+    story.wait(milliseconds{20});
+    story.expect("?RS; ?SM");
+    story.rs(State::printing);
+    story.sm(0, 106, 0);
+    story.expect("");
+    story.wait(milliseconds{500});
+    story.take();
+    story.rs(State::printing);
+    story.expect("!ST; ?RS");
+    story.judge(0, 106, true, 1005);
+    story.expect("settle: printed none, in doubt 104-107, unused none by no evidence; "
+                 "!FF; end: stopped_at_printer (ready for print start, error 0)");
+}
+
+TEST(FeederStopPoint, shouldFinishWhenAPrinterClearsTheStopPointBehindTheLastRecordAndSaysThatItPrints) {
+    Story story = reach(Phase::printing);
+    story.sm(1, 104, 110);
+    story.sm(1, 108, 110);
+    story.take();
+    story.sm(0, 110, 0);
+    story.expect("?RS");
+    story.rs(State::printing);
+    story.wait(milliseconds{501});
+    story.take();
+    story.rs(State::printing);
+    story.expect("!ST; ?RS");
+    story.judge(0, 110);
+    story.expect("settle: printed 109-110, in doubt none, unused none by mail status; "
+                 "end: finished (ready for print start, error 0)");
+}
+
+TEST(FeederStopPoint, shouldStopWhenSomebodyElseSetsTheStopPoint) {
+    Story story = reach(Phase::printing);
+    story.sm(1, 103, 500);
+    story.expect("?RS");
+    story.rs(State::printing);
+    story.wait(milliseconds{501});
+    story.take();
+    story.rs(State::printing);
+    story.expect("!ST; ?RS");
+    story.judge(0, 104, true, 1004);
+    EXPECT_NE(story.take().find("end: impossible_report"), std::string::npos);
+}
+
+} // namespace
+} // namespace linefeed::feeder

@@ -1,0 +1,174 @@
+// A printer found printing the earlier run is taken over without a stop, if it is clear where to go on; else it is
+// halted.
+#include "story.hpp"
+
+namespace linefeed::feeder {
+namespace {
+
+using State = protocol::MachineState;
+
+FeederPlan takeover_plan() {
+    FeederPlan plan = plan_with(earlier_run());
+    plan.take_over = true;
+    return plan;
+}
+
+/// Found printing record 150; the FIFO of 16 holds 151-154.
+Story found_printing(const FeederPlan& plan = takeover_plan(), std::uint32_t total = 950) {
+    Story story{quick_settings(), plan};
+    story.reported_depth = 16;
+    story.identify(State::printing);
+    story.sm(3, 150, 200);
+    story.sm(3, 150, 200);
+    story.take();
+    story.cc(total);
+    return story;
+}
+
+const std::string halted =
+    "notice: the printer was still printing records of the earlier run: it is stopped to learn where "
+    "it is; !ST; ?RS";
+const std::string taken = "notice: the printer is still printing: taken over without a stop; notice: printing; ";
+
+TEST(FeederTakeover, shouldGoOnBehindTheLastRecordInThePrinter) {
+    Story story = found_printing();
+    story.expect("?SM");
+    story.sm(2, 151, 200);
+    story.expect("?SM"); // one answer is no proof
+    story.sm(1, 152, 200);
+    story.expect("adopt run, printed through 152, sent through 154");
+    story.granted(1, 300, 200);
+    story.expect(taken + "=CM 300; ?SM");
+    story.supplied(300);
+    story.expect("=MR 155-168");
+    EXPECT_EQ(story.feeder.refill().level(), RecordCount{16});
+    story.sm(15, 152, 300);
+    story.sm(14, 153, 300);
+    story.expect("intent through 232; printed through 153; =MR 169-169");
+}
+
+TEST(FeederTakeover, shouldFinishTheRunItHasTakenOver) {
+    Story story = found_printing();
+    story.sm(2, 151, 200);
+    story.sm(2, 151, 200);
+    story.take();
+    story.granted(1, 200, 200);
+    story.expect(taken + "?SM"); // the stop point stands already
+    story.supplied(200);
+    story.take();
+    for (std::uint32_t number = 160; number < 200; number += 8) {
+        story.sm(5, number, 200);
+    }
+    story.sm(0, 200, 0);
+    story.take();
+    story.rs(State::ready_to_print, end_message);
+    story.judge(0, 200, true, 1000, end_message);
+    story.expect("settle: printed 193-200, in doubt none, unused none by end message 1223; !EQ; ?RS");
+}
+
+TEST(FeederTakeover, shouldJudgeTheRunItHasTakenOverByItsOwnCounter) {
+    Story story = found_printing();
+    story.sm(2, 151, 200);
+    story.sm(2, 151, 200);
+    story.granted(1, 200, 200);
+    story.supplied(200);
+    story.take();
+    story.stop();
+    story.judge(0, 160, true, 960);
+    story.expect("settle: printed 152-160, in doubt none, unused 161-167 by mail status and total print counter; !FF; "
+                 "end: stop_requested (ready for print start, error 0)");
+}
+
+TEST(FeederTakeover, shouldNotTakeAnUnfinishedPrintForSure) {
+    Story story = found_printing();
+    story.sm(2, 151, 200, false);
+    story.sm(2, 151, 200, false);
+    story.expect("?SM; ?SM; adopt run, printed through 150, sent through 154");
+    story.granted(1, 200, 200);
+    story.take();
+    story.sm(2, 151, 200);
+    story.expect("printed through 151");
+}
+
+TEST(FeederTakeover, shouldKeepWhatIsConfirmedAlready) {
+    Story story{quick_settings(), takeover_plan()};
+    story.reported_depth = 16;
+    story.identify(State::printing);
+    story.locate(100, 900);
+    story.expect(halted); // nothing queued: the line would run dry
+
+    OpenRun run = earlier_run();
+    Story other{quick_settings(), FeederPlan{.open = run, .doubt_blocks = true, .take_over = true}};
+    other.reported_depth = 16;
+    other.identify(State::printing);
+    other.sm(3, 100, 200, false);
+    other.sm(3, 100, 200, false);
+    other.cc(900);
+    other.sm(3, 100, 200, false);
+    other.sm(3, 100, 200, false);
+    EXPECT_NE(other.take().find("adopt run, printed through 100, sent through 104"), std::string::npos);
+    other.granted(1, 200, 200);
+    other.take();
+    other.sm(3, 100, 200);
+    other.expect("");
+}
+
+TEST(FeederTakeover, shouldHaltWhenThePlanDoesNotAllowIt) {
+    Story story = found_printing(plan_with(earlier_run()));
+    story.expect(halted);
+}
+
+TEST(FeederTakeover, shouldHaltWhenTheAnswersDoNotComeToAgree) {
+    Story story = found_printing();
+    story.take();
+    for (std::uint32_t entries = 2; entries < 8; ++entries) {
+        story.sm(entries, 151, 200); // records of the old connection still arrive
+        story.expect("?SM");
+    }
+    story.sm(8, 151, 200);
+    story.expect(halted);
+}
+
+TEST(FeederTakeover, shouldHaltWhenAnAnswerCannotBe) {
+    struct Answer {
+        std::uint32_t entries;
+        std::uint32_t last_printed;
+        std::uint32_t depth;
+    };
+    for (const Answer& answer :
+         {Answer{0, 151, 16}, Answer{3, 201, 16}, Answer{3, 99, 16}, Answer{3, 0, 16}, Answer{3, 197, 16},
+          Answer{16, 151, 16}, Answer{4294967295U, 151, 16}, Answer{3, 151, 0}, Answer{3, 151, 3}}) {
+        Story story = found_printing();
+        story.take();
+        story.reported_depth = answer.depth;
+        story.sm(answer.entries, answer.last_printed, 200);
+        story.expect(halted);
+    }
+}
+
+TEST(FeederTakeover, shouldHaltWhenSomethingElseWasPrinted) {
+    Story story = found_printing(takeover_plan(), 960);
+    story.take();
+    story.sm(3, 150, 200);
+    story.expect(halted);
+
+    FeederPlan without_counter = takeover_plan();
+    without_counter.open->total_before.reset();
+    story = found_printing(without_counter);
+    story.take();
+    story.sm(3, 150, 200);
+    story.expect("?SM");
+}
+
+TEST(FeederTakeover, shouldStopThePrinterOnRequestWhileItIsTakenOver) {
+    Story story = found_printing();
+    story.sm(2, 151, 200);
+    story.sm(2, 151, 200);
+    story.take();
+    ASSERT_EQ(story.phase(), Phase::granting);
+    story.stop();
+    story.expect("!ST; end: stop_requested (printing, error 0)");
+}
+
+} // namespace
+} // namespace linefeed::feeder

@@ -1,0 +1,445 @@
+// A feeder, a printer and a ledger, with everything between them that may go wrong, from one seed.
+#pragma once
+
+#include "printer_double.hpp"
+#include "story.hpp"
+
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <random>
+
+namespace linefeed::feeder {
+/// Which things may go wrong.
+struct Faults {
+    bool link = false;           ///< lost, with whatever is on the way
+    bool host_crash = false;     ///< linefeed dies; what was not durable is forgotten
+    bool power = false;          ///< the printer's
+    bool errors = false;         ///< of the printer
+    bool operator_stops = false; ///< at the panel
+    bool restarts = false;       ///< stopped and at once started again at the panel, in the middle of a run
+    bool requests = false;       ///< linefeed is asked to stop
+    bool broken_counter = false; ///< `?CC` is not answered
+};
+
+/// What the ledger knows of a record.
+enum class Fate { fresh, open, printed, unused, in_doubt, skipped };
+
+class Line {
+public:
+    Line(std::uint32_t seed, const Faults& faults, PrinterDouble::StopPointHabit habit)
+        : random_(seed)
+        , faults_(faults)
+        , printer_(habit)
+        , fates_(records + 1, Fate::fresh)
+        , take_over_(seed % 2 == 0) {}
+
+    void run() {
+        for (int runs = 0; runs < 200 && !done(); ++runs) {
+            faults_end_ = runs > 20;
+            if (faults_end_) {
+                printer_.repair();
+            }
+            one_run();
+            if (testing::Test::HasFatalFailure()) {
+                return;
+            }
+            between_runs();
+            decide_doubts();
+        }
+        ASSERT_TRUE(done()) << "the job does not come to its end";
+        judge_tape();
+    }
+    [[nodiscard]] std::uint64_t doubts() const { return doubts_; }
+    /// The end of the story.
+    [[nodiscard]] std::string trace() const {
+        std::string lines;
+        constexpr std::size_t shown = 150;
+        for (std::size_t i = trace_.size() > shown ? trace_.size() - shown : 0; i < trace_.size(); ++i) {
+            lines += trace_[i] + "\n";
+        }
+        return lines;
+    }
+
+private:
+    static constexpr std::uint32_t records = 60;
+
+    template <typename... Parts>
+    void note(const Parts&... parts) {
+        std::ostringstream line;
+        (line << ... << parts);
+        trace_.push_back(line.str());
+    }
+
+    bool chance(std::uint32_t one_in) { return random_() % one_in == 0; }
+    std::uint32_t draw(std::uint32_t below) { return static_cast<std::uint32_t>(random_() % below); }
+    bool fault(bool possible, std::uint32_t one_in) { return possible && !faults_end_ && chance(one_in); }
+
+    bool done() const {
+        return std::all_of(fates_.begin() + 1, fates_.end(),
+                           [](Fate fate) { return fate == Fate::printed || fate == Fate::skipped; });
+    }
+
+    std::optional<OpenRun> open_run() const {
+        const auto first = std::find(fates_.begin(), fates_.end(), Fate::open);
+        if (first == fates_.end()) {
+            return std::nullopt;
+        }
+        OpenRun run = started_;
+        const auto behind = std::find_if(first, fates_.end(), [](Fate fate) { return fate != Fate::open; });
+        run.printed_through = RecordNumber{static_cast<std::uint32_t>(first - fates_.begin()) - 1};
+        run.issued_through = RecordNumber{static_cast<std::uint32_t>(behind - fates_.begin()) - 1};
+        return run;
+    }
+
+    void one_run() {
+        FeederSettings settings;
+        settings.stop_timeout = std::chrono::milliseconds{200};
+        settings.finish_timeout = std::chrono::milliseconds{100};
+        feeder_ = std::make_unique<Feeder>(
+            settings, FeederPlan{.open = open_run(), .doubt_blocks = true, .take_over = take_over_});
+        ended_ = false;
+        to_printer_.clear();
+        to_host_.clear();
+        to_ledger_.clear();
+        act([this](Actions& out) { feeder_->start(now_, out); });
+        for (int step = 0; step < 20000 && !ended_; ++step) {
+            one_step();
+            if (testing::Test::HasFatalFailure()) {
+                return;
+            }
+        }
+        ASSERT_TRUE(ended_) << "the run hangs in phase " << static_cast<int>(feeder_->phase());
+        while (!to_ledger_.empty()) {
+            ledger_takes_one();
+        }
+    }
+
+    void one_step() {
+        now_ += std::chrono::microseconds{draw(1500)};
+        if (const auto wake = feeder_->next_wake(); wake && *wake <= now_) {
+            act([this](Actions& out) { feeder_->on_time(now_, out); });
+        }
+        switch (draw(8)) {
+        case 0:
+        case 1:
+            printer_takes_one();
+            break;
+        case 2:
+        case 3:
+            host_takes_one();
+            break;
+        case 4:
+            ledger_takes_one();
+            break;
+        case 5:
+            print_go();
+            break;
+        case 6:
+            printer_.finish_print();
+            break;
+        default:
+            something_happens();
+            break;
+        }
+        ASSERT_FALSE(printer_.overfull());
+    }
+
+    void print_go() {
+        const std::uint32_t before = printer_.total();
+        printer_.print_go();
+        if (printer_.total() != before) {
+            note("prints ", printer_.last_printed());
+        }
+    }
+
+    /// The feeder has seen the stop point stand while the printer prints.
+    bool stop_point_seen() const {
+        return feeder_->phase() == Phase::printing && feeder_->mail().stop_at != RecordNumber{} &&
+               feeder_->refill().printed_through() >= feeder_->refill().range().first();
+    }
+
+    void something_happens() {
+        if (fault(faults_.link, 150)) {
+            lose_link();
+        } else if (fault(faults_.host_crash, 150)) {
+            crash();
+        } else if (fault(faults_.power, 150)) {
+            note("power");
+            printer_.power_cycle();
+            lose_link();
+        } else if (fault(faults_.errors, 100)) {
+            printer_.fail();
+        } else if (fault(faults_.operator_stops, 60)) {
+            note("operator stops");
+            printer_.stop();
+        } else if (fault(faults_.restarts && stop_point_seen(), 60)) {
+            note("stopped and started again");
+            printer_.stop();
+            printer_.start();
+        } else if (fault(faults_.requests, 100)) {
+            act([this](Actions& out) { feeder_->request_stop(now_, out); });
+        }
+    }
+
+    /// Some of what was on the way still arrives.
+    void lose_link() {
+        note("link lost");
+        for (std::uint32_t arrive = draw(12); arrive > 0; --arrive) {
+            printer_takes_one();
+        }
+        to_printer_.clear();
+        to_host_.clear();
+        act([this](Actions& out) { feeder_->on_link_lost(out); });
+    }
+
+    void crash() {
+        note("linefeed dies");
+        for (std::uint32_t arrive = draw(12); arrive > 0; --arrive) {
+            printer_takes_one();
+        }
+        for (std::uint32_t durable = draw(4); durable > 0; --durable) {
+            ledger_takes_one();
+        }
+        to_ledger_.clear();
+        ended_ = true;
+    }
+
+    /// The line does not stand still because linefeed does.
+    void between_runs() {
+        for (std::uint32_t steps = draw(20); steps > 0; --steps) {
+            chance(2) ? print_go() : printer_.finish_print();
+        }
+        if (fault(faults_.power, 10)) {
+            note("power");
+            printer_.power_cycle();
+        }
+        if (chance(2)) {
+            printer_.repair();
+        }
+    }
+
+    /// The operator looks at the products, and knows.
+    void decide_doubts() {
+        for (std::uint32_t number = 1; number <= records; ++number) {
+            if (fates_[number] == Fate::in_doubt) {
+                ++doubts_;
+                fates_[number] = on_tape(number) > 0 ? Fate::skipped : Fate::unused;
+            }
+        }
+    }
+
+    std::int64_t on_tape(std::uint32_t number) const {
+        return std::count(printer_.tape().begin(), printer_.tape().end(), number);
+    }
+
+    void judge_tape() {
+        for (std::uint32_t number = 1; number <= records; ++number) {
+            ASSERT_EQ(on_tape(number), 1) << "record " << number;
+        }
+    }
+
+    // What the feeder wants done.
+
+    template <typename Fact>
+    void act(const Fact& fact) {
+        Actions actions;
+        fact(actions);
+        for (const Action& action : actions) {
+            ASSERT_FALSE(ended_) << "after the end: " << action;
+            note("feeder: ", action);
+            carry_out(action);
+        }
+    }
+
+    void carry_out(const Action& action) {
+        if (const auto* send = std::get_if<SendRecords>(&action)) {
+            for (std::uint32_t number = send->range.first().value(); number <= send->range.last().value(); ++number) {
+                ASSERT_EQ(fates_[number], Fate::open) << "sent without a durable intent: " << number;
+                to_printer_.emplace_back(SendRecords{RecordRange{RecordNumber{number}, RecordCount{1}}});
+            }
+        } else if (std::holds_alternative<End>(action)) {
+            ended_ = true;
+            last_words();
+        } else if (std::holds_alternative<Settle>(action) || std::holds_alternative<BeginRun>(action) ||
+                   std::holds_alternative<AdoptRun>(action) || std::holds_alternative<AskIntent>(action) ||
+                   std::holds_alternative<ConfirmPrinted>(action)) {
+            to_ledger_.push_back(action);
+        } else if (!std::holds_alternative<Notice>(action)) {
+            to_printer_.push_back(action);
+        }
+    }
+
+    /// A session writes its last commands before it closes.
+    void last_words() {
+        while (!to_printer_.empty()) {
+            printer_takes_one();
+        }
+    }
+
+    void printer_takes_one() {
+        if (to_printer_.empty()) {
+            return;
+        }
+        const Action action = to_printer_.front();
+        note("printer takes ", action);
+        to_printer_.pop_front();
+        if (const auto* inquire = std::get_if<Inquire>(&action)) {
+            answer(inquire->what);
+        } else if (const auto* command = std::get_if<Command>(&action)) {
+            printer_.take(*command);
+        } else if (const auto* stop = std::get_if<SetStopAt>(&action)) {
+            printer_.take(*stop);
+        } else if (const auto* send = std::get_if<SendRecords>(&action)) {
+            printer_.take_record(send->range.first().value());
+        } else if (const auto* marker = std::get_if<SendEndMarker>(&action)) {
+            printer_.take_record(marker->number.value());
+        }
+    }
+
+    void answer(protocol::Parameter what) {
+        const protocol::MailStatus mail =
+            what == protocol::Parameter::SM ? printer_.mail_status(chance(3)) : protocol::MailStatus{};
+        const std::uint32_t total = printer_.total();
+        const protocol::MachineStatus status = printer_.status();
+        note("printer says: ", status.machine == protocol::MachineState::printing ? "printing" : "stands", ", error ",
+             status.error.raw, ", SM ", mail.entries, ' ', mail.last_printed, ' ', mail.stop_at, ' ',
+             mail.last_print_finished, ", total ", total);
+        to_host_.emplace_back([this, what, mail, total, status](Actions& out) {
+            switch (what) {
+            case protocol::Parameter::RS:
+                feeder_->on_machine_status(status, now_, out);
+                break;
+            case protocol::Parameter::SM:
+                feeder_->on_mail_status(mail, now_, out);
+                break;
+            case protocol::Parameter::CC:
+                if (faults_.broken_counter) {
+                    feeder_->on_no_answer(what, now_, out);
+                } else {
+                    feeder_->on_counters({.product = {}, .stop_after = {}, .total = total}, now_, out);
+                }
+                break;
+            case protocol::Parameter::VS: {
+                protocol::VersionInfo version;
+                version.serial_number = "S1";
+                feeder_->on_version(version, now_, out);
+                break;
+            }
+            default:
+                feeder_->on_job_name({}, now_, out);
+                break;
+            }
+        });
+    }
+
+    void host_takes_one() {
+        if (!to_host_.empty()) {
+            const auto fact = to_host_.front();
+            to_host_.pop_front();
+            act(fact);
+        }
+    }
+
+    // The ledger.
+
+    void ledger_takes_one() {
+        if (to_ledger_.empty()) {
+            return;
+        }
+        const Action action = to_ledger_.front();
+        note("ledger takes ", action);
+        to_ledger_.pop_front();
+        if (const auto* begin = std::get_if<BeginRun>(&action)) {
+            grant(*begin);
+        } else if (const auto* adopted = std::get_if<AdoptRun>(&action)) {
+            adopt(*adopted);
+        } else if (const auto* intent = std::get_if<AskIntent>(&action)) {
+            issue(intent->through.value());
+            tell([this](Actions& out) { feeder_->on_durable(issued_, now_, out); });
+        } else if (const auto* printed = std::get_if<ConfirmPrinted>(&action)) {
+            confirm(printed->through.value());
+        } else if (const auto* settle = std::get_if<Settle>(&action)) {
+            take_verdict(*settle);
+        }
+    }
+
+    template <typename Fact>
+    void tell(const Fact& fact) {
+        if (!ended_) {
+            act(fact);
+        }
+    }
+
+    void grant(const BeginRun& begin) {
+        const auto printable = [](Fate fate) { return fate == Fate::fresh || fate == Fate::unused; };
+        const auto first = std::find_if(fates_.begin() + 1, fates_.end(), printable);
+        const auto behind = std::find_if_not(first, fates_.end(), printable);
+        if (first == fates_.end()) { // the truth about the earlier run left nothing to print
+            tell([this](Actions& out) { feeder_->on_refused(OutcomeCode::nothing_to_print, out); });
+            return;
+        }
+        granted_ = RecordRange::closed(RecordNumber{static_cast<std::uint32_t>(first - fates_.begin())},
+                                       RecordNumber{static_cast<std::uint32_t>(behind - fates_.begin()) - 1});
+        started_ = {granted_.first(), {}, {}, "S1", begin.printer.total_prints, begin.last_printed_before};
+        issued_ = granted_.first().previous();
+        issue(std::min(granted_.last().value(), granted_.first().value() + 11));
+        tell([this](Actions& out) { feeder_->on_granted(granted_, issued_, now_, out); });
+        tell([this](Actions& out) { feeder_->on_supplied(granted_.last(), now_, out); });
+    }
+
+    /// The earlier run goes on: `granted_` and `issued_` still stand.
+    void adopt(const AdoptRun& adopted) {
+        confirm(adopted.printed_through.value());
+        tell([this](Actions& out) { feeder_->on_granted(granted_, issued_, now_, out); });
+        tell([this](Actions& out) { feeder_->on_supplied(granted_.last(), now_, out); });
+    }
+
+    void confirm(std::uint32_t through) {
+        for (std::uint32_t number = granted_.first().value(); number <= through; ++number) {
+            fates_[number] = Fate::printed;
+        }
+    }
+
+    void issue(std::uint32_t through) {
+        for (std::uint32_t number = issued_.value() + 1; number <= through; ++number) {
+            fates_[number] = Fate::open;
+        }
+        issued_ = RecordNumber{std::max(issued_.value(), through)};
+    }
+
+    void take_verdict(const Settle& settle) {
+        const auto set = [this](const RecordRange& range, Fate fate) {
+            for (std::uint64_t i = 0; i < range.count().value(); ++i) {
+                ASSERT_EQ(fates_[range.first().value() + i], Fate::open);
+                fates_[range.first().value() + i] = fate;
+            }
+        };
+        set(settle.verdict.printed, Fate::printed);
+        set(settle.verdict.in_doubt, Fate::in_doubt);
+        std::replace(fates_.begin(), fates_.end(), Fate::open, Fate::unused); // issued, but never sent
+        if (!settle.earlier_run) {
+            tell([this](Actions& out) { feeder_->on_settled(out); });
+        }
+    }
+
+    std::mt19937 random_;
+    Faults faults_;
+    PrinterDouble printer_;
+    std::vector<Fate> fates_;
+    std::unique_ptr<Feeder> feeder_;
+    Instant now_{std::chrono::seconds{1}};
+    std::deque<Action> to_printer_;
+    std::deque<std::function<void(Actions&)>> to_host_;
+    std::deque<Action> to_ledger_;
+    RecordRange granted_;
+    RecordNumber issued_;
+    OpenRun started_;
+    bool take_over_ = false;
+    bool ended_ = false;
+    bool faults_end_ = false;
+    std::uint64_t doubts_ = 0;
+    std::vector<std::string> trace_;
+};
+
+} // namespace linefeed::feeder

@@ -1,0 +1,373 @@
+// One conversation: answers matched with inquiries, time-outs, damage, slow writes, pages, and the farewell.
+#include "conversation.hpp"
+
+namespace linefeed::session {
+namespace {
+
+using feeder::OutcomeCode;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+const std::string not_printing = "^0=RS2\t5\t0\t0\t0\t0\r";
+const std::string printing = "^0=RS2\t6\t0\t0\t0\t0\r";
+
+std::string mail(std::uint32_t entries, std::uint32_t last_printed, std::uint32_t stop_at) {
+    return "^0=SM256\t" + std::to_string(entries) + "\t" + std::to_string(last_printed) + "\t" +
+           std::to_string(stop_at) + "\t1\r";
+}
+
+std::vector<std::unique_ptr<RecordPage>> thousand_records() {
+    return make_pages(1, 1000, 100, plain_text);
+}
+
+TEST(Session, shouldIgnoreAnswersThatNobodyAskedFor) {
+    Conversation host;
+    host.connect();
+    host.sent();
+    host.receive(
+        mail(0, 5, 0) +
+        "^0=CC1\t2\t3\r^0=VS1\r^0=JLA\r^0=XX1\r^0!GO\r^0?RS\r^0*LINE\r^0$FT1\r^0=MR1\tA\r^1=RS2\t5\t0\t0\t0\r");
+    EXPECT_EQ(host.sent(), "");
+    EXPECT_EQ(host.session.statistics().frames_received, 11U);
+    EXPECT_EQ(host.session.statistics().frames_unexpected, 11U);
+    EXPECT_EQ(host.session.statistics().bytes_damaged, 0U);
+    host.receive(not_printing);
+    EXPECT_EQ(host.sent(), "^0?VS\n^0?JL\n");
+    host.receive(not_printing); // it was answered already
+    EXPECT_EQ(host.sent(), "");
+}
+
+TEST(Session, shouldCountWhatIsDamaged) {
+    Conversation host;
+    host.connect();
+    host.sent();
+    host.receive("noise^Z^0=RSx\t5\r^0=RS2\t5^0=RS");
+    EXPECT_EQ(host.sent(), "");
+    EXPECT_GE(host.session.statistics().bytes_damaged, 5U + 1U + 5U);
+    EXPECT_FALSE(host.ended);
+    host.receive("2\t5\t0\t0\t0\t0\r"); // the inquiry still waits for an answer that can be read
+    EXPECT_EQ(host.sent(), "^0?VS\n^0?JL\n");
+}
+
+TEST(Session, shouldNotTakeATruncatedAnswer) {
+    Conversation host;
+    host.connect();
+    host.sent();
+    host.receive("^0=RS2\t5\t0\t0\t0\t" + std::string(10000, '1') + "\r");
+    EXPECT_EQ(host.sent(), "");
+    EXPECT_EQ(host.session.statistics().frames_unexpected, 1U);
+}
+
+TEST(Session, shouldEndWhenThePrinterDoesNotAnswer) {
+    Conversation host;
+    host.connect();
+    EXPECT_EQ(host.session.next_wake(), host.now + seconds{2});
+    host.wait(seconds{2} - milliseconds{1});
+    EXPECT_FALSE(host.ended);
+    host.wait(milliseconds{1});
+    EXPECT_TRUE(host.closed);
+    EXPECT_EQ(host.outcome.code, OutcomeCode::no_answer);
+    EXPECT_EQ(host.story(), "end: no_answer (standby, error 0); close");
+    EXPECT_EQ(host.session.next_wake(), std::nullopt);
+}
+
+TEST(Session, shouldGoOnWithoutTheAnswersThatAreNotNeeded) {
+    Conversation host;
+    host.connect();
+    host.receive(not_printing);
+    host.sent();
+    host.wait(seconds{2}); // neither ?VS nor ?JL
+    EXPECT_EQ(host.sent(), "^0?SM\n");
+    host.receive(mail(0, 0, 0) + mail(0, 0, 0));
+    EXPECT_EQ(host.sent(), "^0?SM\n^0?CC\n");
+    host.receive("^0=VS1\t1\t1\t1\t1\t1\t1\t1\t1\t1\tS1\r"); // too late
+    EXPECT_EQ(host.session.statistics().frames_unexpected, 1U);
+    host.wait(seconds{2});
+    EXPECT_EQ(host.story(), "begin run, last printed before 0");
+}
+
+TEST(Session, shouldStopALineThatDoesNotAnswerAnyMore) {
+    const auto pages = thousand_records();
+    Conversation host;
+    host.print(pages);
+    while (!host.ended) {
+        host.wake();
+    }
+    EXPECT_EQ(host.outcome.code, OutcomeCode::no_answer);
+    const std::string sent = host.sent();
+    EXPECT_EQ(sent.substr(sent.size() - 6), "^0!ST\n");
+    EXPECT_EQ(host.pages_released, pages.size());
+}
+
+TEST(Session, shouldAnswerEachInquiryOnceInOrder) {
+    const auto pages = thousand_records();
+    Conversation host;
+    host.print(pages);
+    host.receive(mail(255, 0, 1000));
+    host.wake();
+    host.wake();
+    EXPECT_EQ(host.sent(), "^0?SM\n^0?SM\n");
+    host.receive(mail(239, 16, 1000) + mail(223, 32, 1000) + mail(200, 255, 1000));
+    EXPECT_EQ(host.story(), "printed through 16; printed through 32");
+    EXPECT_EQ(host.session.statistics().frames_unexpected, 1U);
+    EXPECT_EQ(host.session.feeder().refill().printed_through(), RecordNumber{32});
+}
+
+TEST(Session, shouldGatherWhatComesWhileAWriteIsUnderWay) {
+    const auto pages = thousand_records();
+    Conversation host;
+    host.print(pages);
+    host.writes_complete_at_once = false;
+    host.writes = 0;
+    host.receive(mail(239, 16, 1000));
+    const std::string refill = host.sent();
+    EXPECT_EQ(refill.substr(0, refill.find('\n') + 1), "^0=MR257\trecord 257\n");
+    EXPECT_EQ(host.writes, 1U);
+    host.wake(); // the next ?SM waits for the write
+    EXPECT_EQ(host.sent(), "");
+    host.stop();
+    EXPECT_EQ(host.sent(), "");
+    host.written();
+    EXPECT_EQ(host.sent(), "^0?SM\n^0!ST\n^0?RS\n");
+    EXPECT_EQ(host.writes, 2U);
+}
+
+TEST(Session, shouldGiveAPageBackOnlyWhenItIsWritten) {
+    const auto pages = thousand_records();
+    Conversation host;
+    host.print(pages);
+    EXPECT_EQ(host.pages_released, 2U); // 1-100 and 101-200 went out with the first fill
+    host.writes_complete_at_once = false;
+    host.receive(mail(199, 56, 1000)); // 257-312
+    EXPECT_EQ(host.pages_released, 2U) << "its bytes are being written";
+    host.written();
+    EXPECT_EQ(host.pages_released, 3U);
+}
+
+TEST(Session, shouldTakePagesThatComeBeforeTheGrant) {
+    const auto pages = make_pages(1, 10, 10, plain_text);
+    Conversation host;
+    host.connect();
+    host.receive(not_printing);
+    host.page(*pages[0]);
+    host.receive("^0=VS1\r^0=JLA\r" + mail(0, 0, 0) + mail(0, 0, 0) + "^0=CC0\t0\t0\r");
+    host.grant(1, 10);
+    host.receive(mail(0, 0, 0) + mail(0, 0, 10));
+    const std::string sent = host.sent();
+    EXPECT_NE(sent.find("^0=MR10\trecord 10\n^0?SM\n"), std::string::npos);
+}
+
+TEST(Session, shouldEndWhenTheLedgerRefuses) {
+    Conversation host;
+    host.connect();
+    host.receive(not_printing + "^0=VS1\r^0=JLA\r" + mail(0, 0, 0) + mail(0, 0, 0) + "^0=CC0\t0\t0\r");
+    host.story();
+    host.refuse(OutcomeCode::nothing_to_print);
+    EXPECT_EQ(host.story(), "end: nothing_to_print (ready for print start, error 0); close");
+}
+
+TEST(Session, shouldFlushAndEndWhenTheLedgerHasTheTruth) {
+    const auto pages = thousand_records();
+    Conversation host;
+    host.print(pages);
+    host.stop();
+    host.receive(not_printing + not_printing);
+    // One of these answers belongs to the inquiry from before the stop.
+    host.receive(mail(0, 3, 0) + mail(0, 3, 0) + mail(0, 3, 0) + "^0=CC0\t0\t1003\r");
+    EXPECT_EQ(host.story(), "settle: printed 1-3, in doubt none, unused 4-256 by mail status and total print counter");
+    host.sent();
+    host.settled();
+    EXPECT_EQ(host.sent(), "^0!FF\n");
+    EXPECT_EQ(host.story().substr(0, 31), "release page 201; release page ");
+    EXPECT_EQ(host.outcome.code, OutcomeCode::stop_requested);
+    EXPECT_EQ(host.pages_released, pages.size());
+}
+
+TEST(Session, shouldEndWhenTheLedgerFails) {
+    Conversation host;
+    host.connect();
+    host.storage_failed();
+    EXPECT_EQ(host.outcome.code, OutcomeCode::storage_failed);
+    EXPECT_TRUE(host.closed);
+}
+
+TEST(Session, shouldEndWhenTheLinkIsLost) {
+    const auto pages = thousand_records();
+    Conversation host;
+    host.print(pages);
+    host.close();
+    EXPECT_EQ(host.outcome.code, OutcomeCode::link_lost);
+    EXPECT_TRUE(host.outcome.issued);
+    EXPECT_EQ(host.sent(), "");
+    EXPECT_EQ(host.pages_released, pages.size());
+    EXPECT_EQ(host.session.next_wake(), std::nullopt);
+    host.close(); // once is enough
+    EXPECT_EQ(host.effects.size(), 0U);
+}
+
+TEST(Session, shouldDropAWriteUnderWayWhenTheLinkIsLost) {
+    const auto pages = thousand_records();
+    Conversation host;
+    host.print(pages);
+    host.writes_complete_at_once = false;
+    host.receive(mail(239, 16, 1000));
+    host.close();
+    EXPECT_TRUE(host.closed);
+    EXPECT_TRUE(host.session.pieces().empty());
+    host.written(); // a completion that was on its way
+    EXPECT_EQ(host.effects.size(), 0U);
+}
+
+TEST(Session, shouldWriteItsLastCommandsBeforeItEnds) {
+    const auto pages = thousand_records();
+    Conversation host;
+    host.print(pages);
+    host.writes_complete_at_once = false;
+    host.receive(mail(239, 16, 1000)); // a refill is being written
+    host.sent();
+    while (!host.session.next_wake() || host.session.feeder().phase() != feeder::Phase::ended) {
+        host.wake();
+    }
+    EXPECT_FALSE(host.ended) << "!ST waits for the write";
+    EXPECT_EQ(host.sent(), "");
+    host.written();
+    const std::string sent = host.sent();
+    EXPECT_EQ(sent.substr(sent.size() - 6), "^0!ST\n");
+    EXPECT_FALSE(host.ended);
+    host.written();
+    EXPECT_TRUE(host.closed);
+    EXPECT_EQ(host.outcome.code, OutcomeCode::no_answer);
+}
+
+TEST(Session, shouldEndWithoutItsLastCommandsWhenTheyCannotBeWritten) {
+    const auto pages = thousand_records();
+    Conversation host;
+    host.print(pages);
+    host.writes_complete_at_once = false;
+    host.receive(mail(239, 16, 1000));
+    while (host.session.feeder().phase() != feeder::Phase::ended) {
+        host.wake();
+    }
+    const Instant ended = host.now;
+    EXPECT_EQ(host.session.next_wake(), ended + seconds{1});
+    host.wait(seconds{1} - milliseconds{1});
+    EXPECT_FALSE(host.ended);
+    host.receive(printing); // nobody listens any more
+    host.wait(milliseconds{1});
+    EXPECT_TRUE(host.closed);
+    EXPECT_EQ(host.pages_released, pages.size());
+    host.written();
+    host.wait(seconds{10});
+    EXPECT_EQ(host.effects.size(), 0U);
+}
+
+TEST(Session, shouldEndWhenTheLinkIsLostDuringTheFarewell) {
+    const auto pages = thousand_records();
+    Conversation host;
+    host.print(pages);
+    host.writes_complete_at_once = false;
+    host.receive(mail(239, 16, 1000));
+    while (host.session.feeder().phase() != feeder::Phase::ended) {
+        host.wake();
+    }
+    host.close();
+    EXPECT_TRUE(host.closed);
+    EXPECT_EQ(host.outcome.code, OutcomeCode::no_answer);
+}
+
+TEST(Session, shouldGiveBackAPageThatComesTooLate) {
+    const auto pages = make_pages(1, 20, 10, plain_text);
+    Conversation host;
+    host.print(pages);
+    host.close();
+    ASSERT_TRUE(host.closed);
+    Effects effects;
+    host.session.on_page(pages[0].get(), host.now, effects);
+    ASSERT_EQ(effects.size(), 1U);
+    EXPECT_EQ(std::get<ReleasePage>(effects[0]).page, pages[0].get());
+}
+
+TEST(Session, shouldKeepALatePageUntilTheFarewellIsOver) {
+    const auto pages = thousand_records();
+    const auto late = make_pages(1001, 1100, 100, plain_text);
+    Conversation host;
+    host.print(pages);
+    host.writes_complete_at_once = false;
+    host.receive(mail(239, 16, 1000));
+    while (host.session.feeder().phase() != feeder::Phase::ended) {
+        host.wake();
+    }
+    host.page(*late[0]);
+    EXPECT_FALSE(host.ended);
+    host.wait(seconds{1});
+    EXPECT_EQ(host.pages_released, pages.size() + 1);
+}
+
+TEST(Session, shouldSendABlankEndMarkerWithTheFieldsOfTheRecords) {
+    const auto pages = make_pages(1, 10, 10, plain_text);
+    SessionSettings settings;
+    settings.record_fields = 3;
+    Conversation host{settings};
+    host.connect();
+    host.receive(not_printing + "^0=VS1\r^0=JLA\r" + mail(0, 0, 0) + mail(0, 0, 0) + "^0=CC0\t0\t0\r");
+    host.grant(1, 10);
+    host.receive(mail(0, 0, 0) + mail(0, 0, 0) + mail(0, 0, 0));
+    host.page(*pages[0]);
+    host.receive(mail(9, 0, 0) + printing);
+    for (int answers = 0; answers < 6; ++answers) {
+        host.receive(mail(9, 0, 0));
+        host.wake();
+    }
+    EXPECT_NE(host.sent().find("^0=MR11\t \t \t \n"), std::string::npos);
+}
+
+TEST(Session, shouldSpeakOfATakeover) {
+    feeder::FeederPlan plan;
+    plan.open = feeder::OpenRun{RecordNumber{1}, RecordNumber{0}, RecordNumber{100}, "", {}, RecordNumber{0}};
+    plan.take_over = true;
+    Conversation host{{}, plan};
+    host.connect();
+    host.receive(printing + "^0=VS1\r^0=JLA\r" + mail(3, 50, 100) + mail(3, 50, 100) + "^0=CC0\t0\t0\r" +
+                 mail(3, 50, 100) + mail(3, 50, 100));
+    EXPECT_EQ(host.story(), "adopt run, printed through 50, sent through 54");
+}
+
+/// The most that can gather behind a write that does not complete fits in the next.
+TEST(Session, shouldBoundWhatGathersBehindAWrite) {
+    const auto pages = make_pages(1, 4000, 16, plain_text); // pages far smaller than any real one
+    Conversation host;
+    std::size_t lent = 0;
+    const auto lend = [&] {
+        while (lent < pages.size() && host.pages_lent - host.pages_released < max_pages) {
+            host.page(*pages[lent++]);
+        }
+    };
+    host.connect();
+    host.receive(not_printing + "^0=VS1\r^0=JLA\r" + mail(0, 0, 0) + mail(0, 0, 0) + "^0=CC0\t0\t0\r");
+    host.grant(1, 4000);
+    host.receive(mail(0, 0, 0) + mail(0, 0, 4000));
+    lend();
+    host.receive(mail(255, 0, 4000) + printing);
+    lend();
+    host.writes_complete_at_once = false;
+    std::uint32_t printed = 0;
+    for (int round = 0; round < 200 && !host.session.feeder().refill().all_sent(); ++round) {
+        // Four inquiries are answered while one write is under way.
+        for (int answers = 0; answers < 4 && printed < host.session.feeder().refill().sent_through().value();
+             ++answers) {
+            printed = std::min(printed + 60, host.session.feeder().refill().sent_through().value());
+            host.receive(mail(0, printed, 4000));
+            lend();
+        }
+        host.wake();
+        host.written();
+        host.written();
+        lend();
+    }
+    EXPECT_GT(printed, 2000U);
+    EXPECT_GT(host.largest_write, 10U);
+    EXPECT_LE(host.largest_write, max_write_pieces);
+}
+
+} // namespace
+} // namespace linefeed::session
