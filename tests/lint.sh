@@ -15,7 +15,7 @@ tool() { # the versioned name, or the plain one
 check_format() {
     local format
     format=$(tool clang-format)
-    if find src tests \( -name '*.cpp' -o -name '*.hpp' \) -print0 | xargs -0 -r -n 8 -P "$(nproc)" "$format" --dry-run -Werror; then
+    if find src tests \( -name '*.cpp' -o -name '*.hpp' \) -print0 | sort -z | xargs -0 -r "$format" --dry-run -Werror; then
         echo "format: ok"
     else
         echo "format: run $format -i on the files above" >&2

@@ -62,23 +62,29 @@ build_release() {
     cmake --build --preset release --parallel "$cores"
 }
 
-fuzz() {
+fuzz() { # all targets at once, each with its own log; what it finds is in build/fuzz/found
+    local targets target seconds=${LINEFEED_FUZZ_SECONDS:-600} bad=0
     cmake --preset fuzz > build/fuzz-configure.log 2>&1 || { cat build/fuzz-configure.log; return 1; }
-    cmake --build --preset fuzz --parallel "$cores" || return 1
-    local target name seconds=${LINEFEED_FUZZ_SECONDS:-600} log
-    for target in build/fuzz/bin/*_fuzz; do
-        name=$(basename "$target" _fuzz)
-        log=build/fuzz/$name.log
-        mkdir -p "build/fuzz/found/$name"
-        echo "fuzzing $name for $seconds s"
-        if ! "$target" -max_total_time="$seconds" -jobs="$cores" -workers="$cores" -print_final_stats=1 -artifact_prefix="build/fuzz/found/" \
-            "build/fuzz/found/$name" "tests/fuzz/corpus/$name" > "$log" 2>&1; then
-            tail -n 60 "$log"
-            return 1
-        fi
-        cat fuzz-*.log 2> /dev/null | grep 'number_of_executed_units' || true
-        rm -f fuzz-*.log
+    targets=$(sed -n 's/^linefeed_fuzz_target(\([a-z_]*\) .*/\1/p' tests/fuzz/CMakeLists.txt)
+    # shellcheck disable=SC2086
+    cmake --build --preset fuzz --parallel "$cores" --target ${targets//$'\n'/_fuzz }_fuzz || return 1
+    declare -A running=()
+    for target in $targets; do
+        mkdir -p "build/fuzz/found/$target" "build/fuzz/grown/$target"
+        echo "fuzzing $target for $seconds s"
+        "build/fuzz/bin/${target}_fuzz" -max_total_time="$seconds" -print_final_stats=1 -artifact_prefix="build/fuzz/found/$target/" \
+            "build/fuzz/grown/$target" "tests/fuzz/corpus/$target" > "build/fuzz/$target.log" 2>&1 &
+        running[$target]=$!
     done
+    for target in $targets; do
+        if wait "${running[$target]}"; then
+            echo "$target: $(grep number_of_executed_units "build/fuzz/$target.log")"
+        else
+            tail -n 60 "build/fuzz/$target.log"
+            bad=1
+        fi
+    done
+    return "$bad"
 }
 
 mkdir -p build

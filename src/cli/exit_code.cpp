@@ -49,8 +49,9 @@ ExitCode exit_code(const feeder::Outcome& outcome) {
     case OutcomeCode::did_not_stop:
     case OutcomeCode::impossible_report:
     case OutcomeCode::printer_restarted:
-    case OutcomeCode::storage_failed:
         return ExitCode::stopped;
+    case OutcomeCode::storage_failed:
+        return outcome.issued ? ExitCode::stopped : ExitCode::other;
     }
     assertion_failed("OutcomeCode", __FILE__, __LINE__);
 }

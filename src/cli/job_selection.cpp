@@ -105,6 +105,26 @@ Result<bool> begins_with(spool::Spool& spool, const spool::Job& grown, const spo
     return true;
 }
 
+/// Printing the same records as a new job is for jobs that are done: otherwise the command that was meant to start
+/// again would, given once more to continue, start over.
+Result<void> check_finished(spool::Spool& spool, const spool::Job& twin) {
+    const auto state = spool.ledger_state(twin.id);
+    if (!state) {
+        return state.error();
+    }
+    const bool waiting = state->count(spool::RecordState::open) > RecordCount{0} ||
+                         state->count(spool::RecordState::in_doubt) > RecordCount{0} ||
+                         !state->next_printable(twin.records).empty();
+    if (!state->segments().empty() && waiting) {
+        return Failure{FailureKind::usage, "job " + std::to_string(static_cast<std::int64_t>(twin.id)) +
+                                               " has the same records and is not finished (" +
+                                               std::to_string(state->count(spool::RecordState::printed).value()) +
+                                               " of " + std::to_string(twin.records.count().value()) +
+                                               " printed): continue it without --new-job"};
+    }
+    return {};
+}
+
 /// Refuses new records under the name of an earlier job whose records they may repeat.
 Result<void> check_earlier_jobs(spool::Spool& spool, const spool::Job& job) {
     const auto earlier = spool.find_by_path(job.spec.source.path);
@@ -165,7 +185,7 @@ Result<JobSelection> select_job(const PrintOptions& options, spool::Spool& spool
         return JobSelection{**known, {}, false};
     }
     auto selection = import(options, spool, spec, on_progress);
-    if (!selection || !selection->job || options.new_job) {
+    if (!selection || !selection->job) {
         return selection;
     }
     const spool::Job& job = *selection->job;
@@ -174,15 +194,25 @@ Result<JobSelection> select_job(const PrintOptions& options, spool::Spool& spool
         return same.error();
     }
     const auto twin =
-        std::find_if(same->begin(), same->end(), [&](const spool::Job& other) { return other.id != job.id; });
-    if (twin != same->end()) {
+        std::find_if(same->rbegin(), same->rend(), [&](const spool::Job& other) { return other.id != job.id; });
+    if (twin != same->rend()) {
+        const auto again = options.new_job ? check_finished(spool, *twin) : Result<void>{};
+        if (options.new_job && again) {
+            return selection;
+        }
         if (const auto removed = spool.remove_job(job.id); !removed) {
             return removed.error();
+        }
+        if (!again) {
+            return again.error();
         }
         if (const auto updated = spool.update_source(twin->id, *source); !updated) {
             return updated.error();
         }
         return JobSelection{*twin, {}, false};
+    }
+    if (options.new_job) {
+        return selection;
     }
     if (const auto checked = check_earlier_jobs(spool, job); !checked) {
         if (const auto removed = spool.remove_job(job.id); !removed) {

@@ -2,8 +2,8 @@
 
 #include "cli/print_report.hpp"
 #include "cli/progress_view.hpp"
+#include "cli/record_text.hpp"
 #include "cli/wall_time.hpp"
-#include "protocol/profile.hpp"
 #include "spool/ledger_history.hpp"
 #include "spool/spool.hpp"
 
@@ -27,14 +27,6 @@ std::string dump(const Json& json, int indent) {
 constexpr std::array issued_states{RecordState::printed,  RecordState::in_doubt, RecordState::skipped,
                                    RecordState::released, RecordState::unused,   RecordState::open};
 
-/// The profile's escapes are part of the job's layout.
-protocol::EscapeMode escapes_of(const spool::Job& job) {
-    const Json layout = Json::parse(job.spec.layout, nullptr, false);
-    const auto name = layout.is_object() ? layout.value("profile", std::string{}) : std::string{};
-    const auto profile = protocol::profile_by_name(name);
-    return profile ? profile->escapes : protocol::EscapeMode::backslash;
-}
-
 std::string csv_field(const std::string& text) {
     if (text.find_first_of(",\"\r\n") == std::string::npos) {
         return text;
@@ -52,7 +44,7 @@ public:
     RecordTexts(spool::Spool& spool, const spool::Job& job)
         : spool_(spool)
         , job_(job)
-        , escapes_(escapes_of(job)) {}
+        , format_(record_format(job)) {}
 
     Result<std::vector<std::string>> fields(RecordNumber number) {
         if (!page_ || !page_->range().contains(number)) {
@@ -62,13 +54,13 @@ public:
             }
             page_ = std::move(*page);
         }
-        return record_fields(*page_, number, escapes_);
+        return record_fields(*page_, number, format_);
     }
 
 private:
     spool::Spool& spool_;
     const spool::Job& job_;
-    protocol::EscapeMode escapes_;
+    RecordFormat format_;
     std::optional<RecordPage> page_;
 };
 
@@ -124,10 +116,7 @@ Result<void> show_records(spool::Spool& spool, const spool::Job& job, RecordRang
             if (!fields) {
                 return fields.error();
             }
-            std::string text;
-            for (std::size_t k = 0; k < fields->size(); ++k) {
-                text += (k == 0 ? "" : "\t") + (*fields)[k];
-            }
+            const std::string text = joined(*fields, "\t");
             if (format == "json") {
                 std::cout << dump(record_json(number, *fields, stretch), -1) << '\n';
             } else if (format == "csv") {

@@ -54,6 +54,7 @@ void add_print(CLI::App& app, PrintOptions& options, RawPrintOptions& raw) {
     print
         .add_option("--columns", options.columns,
                     "Columns to print, by name or number from 1, separated by commas; default: all")
+        ->allow_extra_args(false)
         ->delimiter(',');
     print.add_option("--table", options.table, "Table or view of the SQLite database");
     print.add_option("--query", options.query, "SELECT statement that gives the records of the SQLite database");
@@ -66,6 +67,7 @@ void add_print(CLI::App& app, PrintOptions& options, RawPrintOptions& raw) {
         .add_option("--encoding", options.encodings,
                     "What the printer's font wants: latin1 (default), windows-1252 or unicode-hex; COLUMN=ENCODING for "
                     "one column")
+        ->allow_extra_args(false)
         ->delimiter(',');
     print.add_option("--profile", raw.profile, "Firmware profile: " + profile_names())->capture_default_str();
     print.add_option("--base", options.base, "Record k has number BASE + k")->capture_default_str();
@@ -81,6 +83,7 @@ void add_print(CLI::App& app, PrintOptions& options, RawPrintOptions& raw) {
     print
         .add_option("--acknowledge", options.acknowledge,
                     "Error numbers that may be acknowledged before the start, separated by commas")
+        ->allow_extra_args(false)
         ->delimiter(',')
         ->expected(0, 16);
     print.add_option("--last-printed", options.operator_word.last_printed,

@@ -1,6 +1,6 @@
 #include "cli/operator_word.hpp"
 
-#include "cli/print_report.hpp"
+#include "cli/record_text.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -27,14 +27,6 @@ std::string evidence(const std::string& said) {
         -1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
-std::string joined(const std::vector<std::string>& fields) {
-    std::string text;
-    for (std::size_t i = 0; i < fields.size(); ++i) {
-        text += (i == 0 ? "" : " ") + fields[i];
-    }
-    return text;
-}
-
 /// The records that may be on the last product: those in doubt, and the one before the first.
 std::vector<RecordNumber> candidates(const spool::Job& job, const std::vector<RecordRange>& doubt) {
     std::vector<RecordNumber> numbers;
@@ -52,7 +44,8 @@ std::vector<RecordNumber> candidates(const spool::Job& job, const std::vector<Re
 
 /// The record on the last product, by number or text. 0 = none of the job has been printed.
 Result<RecordNumber> last_printed(spool::Spool& spool, const spool::Job& job, const std::vector<RecordRange>& doubt,
-                                  const std::string& said, protocol::EscapeMode escapes) {
+                                  const std::string& said) {
+    const RecordFormat format = record_format(job);
     const std::vector<RecordNumber> possible = candidates(job, doubt);
     std::vector<RecordNumber> by_number;
     std::vector<RecordNumber> by_text;
@@ -67,7 +60,7 @@ Result<RecordNumber> last_printed(spool::Spool& spool, const spool::Job& job, co
         if (!page) {
             return page.error();
         }
-        if (joined(record_fields(*page, candidate, escapes)) == said) {
+        if (joined(record_fields(*page, candidate, format), " ") == said) {
             by_text.push_back(candidate);
         }
     }
@@ -96,8 +89,7 @@ Result<RecordNumber> last_printed(spool::Spool& spool, const spool::Job& job, co
 
 } // namespace
 
-Result<void> settle_by_operator(spool::Spool& spool, const spool::Job& job, const OperatorWord& word,
-                                protocol::EscapeMode escapes) {
+Result<void> settle_by_operator(spool::Spool& spool, const spool::Job& job, const OperatorWord& word) {
     const auto state = spool.ledger_state(job.id);
     if (!state) {
         return state.error();
@@ -108,7 +100,7 @@ Result<void> settle_by_operator(spool::Spool& spool, const spool::Job& job, cons
     }
     std::optional<RecordNumber> last;
     if (!word.last_printed.empty()) {
-        const auto found = last_printed(spool, job, doubt, word.last_printed, escapes);
+        const auto found = last_printed(spool, job, doubt, word.last_printed);
         if (!found) {
             return found.error();
         }

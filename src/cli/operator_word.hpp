@@ -3,7 +3,6 @@
 #pragma once
 
 #include "base/failure.hpp"
-#include "protocol/escapes.hpp"
 #include "spool/spool.hpp"
 
 #include <optional>
@@ -28,7 +27,6 @@ struct OperatorWord {
 
 /// Settles every record in doubt of the job, durable at return. FailureKind::usage if last_printed does not fit: it
 /// must be one of the records in doubt, or the one before the first of them; a text must be that of exactly one.
-[[nodiscard]] Result<void> settle_by_operator(spool::Spool& spool, const spool::Job& job, const OperatorWord& word,
-                                              protocol::EscapeMode escapes);
+[[nodiscard]] Result<void> settle_by_operator(spool::Spool& spool, const spool::Job& job, const OperatorWord& word);
 
 } // namespace linefeed::cli

@@ -3,6 +3,7 @@
 #include "cli/job_selection.hpp"
 #include "cli/print_report.hpp"
 #include "cli/progress_view.hpp"
+#include "cli/record_text.hpp"
 #include "cli/signals.hpp"
 #include "cli/wall_time.hpp"
 #include "daemon/job_run.hpp"
@@ -11,26 +12,39 @@
 
 #include <chrono>
 #include <iostream>
+#include <poll.h>
 #include <unistd.h>
 
 namespace linefeed::cli {
 
 namespace {
 
-/// A spool that is gone with the object: for --dry-run.
+/// A directory of its own for a spool that is gone with the object: for --dry-run.
 class TemporaryDirectory {
 public:
-    TemporaryDirectory()
-        : path_(std::filesystem::temp_directory_path() / ("linefeed-" + std::to_string(::getpid()))) {}
+    [[nodiscard]] static Result<TemporaryDirectory> make() {
+        std::string path = (std::filesystem::temp_directory_path() / "linefeed-XXXXXX").string();
+        if (::mkdtemp(path.data()) == nullptr) {
+            return Failure{FailureKind::storage, "a temporary directory cannot be made: " + path};
+        }
+        return TemporaryDirectory{path};
+    }
+    TemporaryDirectory(TemporaryDirectory&& other) noexcept
+        : path_(std::exchange(other.path_, {})) {}
     ~TemporaryDirectory() {
-        std::error_code ignored;
-        std::filesystem::remove_all(path_, ignored);
+        if (!path_.empty()) {
+            std::error_code ignored;
+            std::filesystem::remove_all(path_, ignored);
+        }
     }
     TemporaryDirectory(const TemporaryDirectory&) = delete;
     TemporaryDirectory& operator=(const TemporaryDirectory&) = delete;
+    TemporaryDirectory& operator=(TemporaryDirectory&&) = delete;
     [[nodiscard]] const std::filesystem::path& path() const { return path_; }
 
 private:
+    explicit TemporaryDirectory(std::filesystem::path path)
+        : path_(std::move(path)) {}
     std::filesystem::path path_;
 };
 
@@ -43,6 +57,7 @@ public:
     Result<ExitCode> run();
 
 private:
+    Result<ExitCode> run(const std::filesystem::path& spool_path, const link::PrinterAddress& printer);
     Result<spool::Job> find_job(spool::Spool& spool);
     [[nodiscard]] Result<RecordRange> wanted_range(const spool::Job& job) const;
     Result<ExitCode> dry_run(spool::Spool& spool, const spool::Job& job, RecordRange wanted) const;
@@ -53,6 +68,7 @@ private:
     Result<feeder::Outcome> print_runs(spool::Spool& spool, const spool::Job& job, RecordRange wanted,
                                        const daemon::JobRunSettings& settings);
     Result<bool> settle_doubt(spool::Spool& spool, const spool::Job& job);
+    bool wait_for_answer();
     Result<bool> ask_operator(spool::Spool& spool, const spool::Job& job);
     void watch(daemon::JobRun& run, RecordRange wanted);
     [[nodiscard]] daemon::JobRunSettings run_settings() const;
@@ -78,17 +94,19 @@ daemon::JobRunSettings PrintCommand::run_settings() const {
 }
 
 Result<ExitCode> PrintCommand::run() {
-    daemon::JobRunSettings settings = run_settings();
-    if (!options_.dry_run) {
-        const auto address = link::parse_printer_address(options_.printer);
-        if (!address) {
-            return address.error();
-        }
-        settings.printer = *address;
+    if (options_.dry_run) {
+        const auto temporary = TemporaryDirectory::make();
+        return temporary ? run(temporary->path() / "spool.db", {}) : Result<ExitCode>{temporary.error()};
     }
-    const TemporaryDirectory temporary;
-    const std::filesystem::path path = options_.dry_run ? temporary.path() / "spool.db" : options_.spool;
-    auto spool = spool::Spool::open(path, {wall_clock_ns, {}});
+    const auto address = link::parse_printer_address(options_.printer);
+    if (!address) {
+        return address.error();
+    }
+    return run(options_.spool, *address);
+}
+
+Result<ExitCode> PrintCommand::run(const std::filesystem::path& spool_path, const link::PrinterAddress& printer) {
+    auto spool = spool::Spool::open(spool_path, {wall_clock_ns, {}});
     if (!spool) {
         return spool.error();
     }
@@ -103,11 +121,14 @@ Result<ExitCode> PrintCommand::run() {
     if (options_.dry_run) {
         return dry_run(*spool, *job, *wanted);
     }
-    const auto endpoints = link::resolve(settings.printer);
+    const auto endpoints = link::resolve(printer);
     if (!endpoints) {
         return endpoints.error();
     }
+    daemon::JobRunSettings settings = run_settings();
+    settings.printer = printer;
     settings.endpoints = *endpoints;
+    settings.session.charsets = record_format(*job).charsets;
     return print(*spool, *job, *wanted, settings);
 }
 
@@ -132,6 +153,10 @@ Result<spool::Job> PrintCommand::find_job(spool::Spool& spool) {
     }
     if (!selection->job) {
         return Failure{FailureKind::input, {}}; // said already
+    }
+    if (selection->report.rows_with_empty_field > 0) {
+        view_.message(std::to_string(selection->report.rows_with_empty_field) +
+                      " records have an empty field: the printer may show the placeholder of its job there");
     }
     if (selection->imported && !options_.json && !options_.dry_run) {
         view_.message("imported " + std::to_string(selection->job->records.count().value()) + " records from " +
@@ -237,23 +262,35 @@ Result<std::optional<feeder::Outcome>> PrintCommand::settle_other_jobs(spool::Sp
     return std::optional<feeder::Outcome>{};
 }
 
+/// Waits until a line stands at the terminal. False if Ctrl-C comes first.
+bool PrintCommand::wait_for_answer() {
+    constexpr int wait_ms = 100;
+    while (!interrupted_) {
+        pollfd terminal{STDIN_FILENO, POLLIN, 0};
+        if (::poll(&terminal, 1, wait_ms) > 0) {
+            return true;
+        }
+        interrupted_ = signals_.take() > 0;
+    }
+    return false;
+}
+
 /// Whether records wait for an operator, and he can be asked. True if his word is in the ledger now.
 Result<bool> PrintCommand::ask_operator(spool::Spool& spool, const spool::Job& job) {
     if (options_.json || ::isatty(STDIN_FILENO) == 0 || ::isatty(STDERR_FILENO) == 0) {
         return false;
     }
-    const auto report = make_report(spool, job, job.records, {.code = feeder::OutcomeCode::records_in_doubt}, {},
-                                    options_.profile.escapes);
+    const auto report = make_report(spool, job, job.records, {.code = feeder::OutcomeCode::records_in_doubt}, {});
     if (!report) {
         return report.error();
     }
     show_doubtful(*report);
     OperatorWord word;
     std::cerr << "Which record is on the last product? Its number or text (nothing = decide later): " << std::flush;
-    if (!std::getline(std::cin, word.last_printed) || word.last_printed.empty()) {
+    if (!wait_for_answer() || !std::getline(std::cin, word.last_printed) || word.last_printed.empty()) {
         return false;
     }
-    if (const auto settled = settle_by_operator(spool, job, word, options_.profile.escapes); !settled) {
+    if (const auto settled = settle_by_operator(spool, job, word); !settled) {
         return settled.error();
     }
     return true;
@@ -267,8 +304,7 @@ Result<bool> PrintCommand::settle_doubt(spool::Spool& spool, const spool::Job& j
         return false;
     }
     word_counts_ = false;
-    if (const auto settled = settle_by_operator(spool, job, options_.operator_word, options_.profile.escapes);
-        !settled) {
+    if (const auto settled = settle_by_operator(spool, job, options_.operator_word); !settled) {
         return settled.error();
     }
     return true;
@@ -324,10 +360,21 @@ Result<ExitCode> PrintCommand::print(spool::Spool& spool, const spool::Job& job,
     if (!outcome) {
         return outcome.error();
     }
-    if (outcome->code == feeder::OutcomeCode::nothing_to_print) {
+    feeder::Outcome told = *outcome;
+    const bool good = told.code == feeder::OutcomeCode::finished || told.code == feeder::OutcomeCode::nothing_to_print;
+    if (interrupted_ && good) {
+        const auto state = spool.ledger_state(job.id);
+        if (!state) {
+            return state.error();
+        }
+        if (!state->next_printable(wanted).empty()) {
+            told.code = feeder::OutcomeCode::stop_requested; // between two runs
+        }
+    }
+    if (told.code == feeder::OutcomeCode::nothing_to_print) {
         detail_ = "all records of " + options_.file.string() + " in this range are printed already";
     }
-    const auto report = make_report(spool, job, wanted, *outcome, detail_, options_.profile.escapes);
+    const auto report = make_report(spool, job, wanted, told, detail_);
     if (!report) {
         return report.error();
     }

@@ -1,8 +1,7 @@
 #include "cli/print_report.hpp"
 
 #include "cli/progress_view.hpp"
-#include "protocol/charset.hpp"
-#include "protocol/mail_record.hpp"
+#include "cli/record_text.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -19,51 +18,15 @@ std::string dump(const Json& json) {
     return json.dump(2, ' ', false, Json::error_handler_t::replace);
 }
 
-std::string utf8_from_latin1(const std::string& bytes) {
-    std::string text;
-    for (const char c : bytes) {
-        const auto byte = static_cast<unsigned char>(c);
-        if (byte < 0x80) {
-            text += c;
-        } else {
-            text += static_cast<char>(0xC0 | (byte >> 6));
-            text += static_cast<char>(0x80 | (byte & 0x3F));
-        }
-    }
-    return text;
-}
-
 Json range_json(const RecordRange& range) {
     return range.empty() ? Json(nullptr) : Json{{"first", range.first().value()}, {"last", range.last().value()}};
 }
 
-std::string joined(const std::vector<std::string>& fields) {
-    std::string text;
-    for (const std::string& field : fields) {
-        text += (text.empty() ? "" : " | ") + printable(field);
-    }
-    return text;
-}
-
 } // namespace
 
-std::vector<std::string> record_fields(const RecordPage& page, RecordNumber number, protocol::EscapeMode escapes) {
-    constexpr std::string_view head = "^0=MR";
-    std::string_view frame = page.slice({number, RecordCount{1}});
-    frame.remove_prefix(head.size());
-    frame.remove_suffix(1);
-    std::vector<std::string> fields;
-    if (const auto record = protocol::parse_mail_record(frame, escapes)) {
-        for (const std::string& field : record->fields) {
-            fields.push_back(utf8_from_latin1(field));
-        }
-    }
-    return fields;
-}
-
 Result<PrintReport> make_report(spool::Spool& spool, const spool::Job& job, RecordRange wanted,
-                                const feeder::Outcome& outcome, const std::string& detail,
-                                protocol::EscapeMode escapes) {
+                                const feeder::Outcome& outcome, const std::string& detail) {
+    const RecordFormat format = record_format(job);
     const auto state = spool.ledger_state(job.id);
     if (!state) {
         return state.error();
@@ -91,7 +54,7 @@ Result<PrintReport> make_report(spool::Spool& spool, const spool::Job& job, Reco
             if (!page) {
                 return page.error();
             }
-            report.doubtful.push_back({number, record_fields(*page, number, escapes)});
+            report.doubtful.push_back({number, record_fields(*page, number, format)});
             if (number == range.last()) {
                 break;
             }
@@ -130,7 +93,7 @@ void show_json(const PrintReport& report) {
 
 void show_doubtful(const PrintReport& report) {
     for (const DoubtfulRecord& record : report.doubtful) {
-        std::cout << "in doubt: " << record.number << "  " << joined(record.fields) << '\n';
+        std::cout << "in doubt: " << record.number << "  " << printable(joined(record.fields, " | ")) << '\n';
     }
     if (report.in_doubt.value() > report.doubtful.size()) {
         std::cout << "in doubt: " << report.in_doubt.value() - report.doubtful.size() << " more\n";

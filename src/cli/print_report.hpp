@@ -6,7 +6,6 @@
 #include "cli/exit_code.hpp"
 #include "feeder/outcome.hpp"
 #include "intake/import.hpp"
-#include "protocol/escapes.hpp"
 #include "spool/spool.hpp"
 
 #include <nlohmann/json_fwd.hpp>
@@ -41,8 +40,7 @@ inline constexpr std::size_t max_doubtful_shown = 300;
 
 /// Puts the report together from the ledger.
 [[nodiscard]] Result<PrintReport> make_report(spool::Spool& spool, const spool::Job& job, RecordRange wanted,
-                                              const feeder::Outcome& outcome, const std::string& detail,
-                                              protocol::EscapeMode escapes);
+                                              const feeder::Outcome& outcome, const std::string& detail);
 
 /// The records in doubt with their texts, for a person.
 void show_doubtful(const PrintReport& report);
@@ -52,9 +50,5 @@ void show_report(const PrintReport& report, bool json);
 void show_bad_rows(const intake::ImportReport& report, const std::string& file, bool refused, bool json);
 /// A failure before there was anything to report.
 void show_failure(const Failure& failure, bool json);
-
-/// Fields of a record as UTF-8, as far as its bytes tell (hex digits stay what they are).
-[[nodiscard]] std::vector<std::string> record_fields(const RecordPage& page, RecordNumber number,
-                                                     protocol::EscapeMode escapes);
 
 } // namespace linefeed::cli

@@ -14,6 +14,9 @@ SignalWatch::SignalWatch() {
     sigaddset(&signals, SIGINT);
     sigaddset(&signals, SIGTERM);
     sigaddset(&signals, SIGHUP);
+    sigaddset(&signals, SIGQUIT);
+    sigaddset(&signals, SIGTSTP); // a suspended host lets the line run dry
+    ::signal(SIGPIPE, SIG_IGN);   // whoever reads the messages may go away; the line goes on
     LINEFEED_ASSERT(pthread_sigmask(SIG_BLOCK, &signals, nullptr) == 0);
     descriptor_ = signalfd(-1, &signals, SFD_NONBLOCK | SFD_CLOEXEC);
     LINEFEED_ASSERT(descriptor_ >= 0);

@@ -3,7 +3,8 @@
 
 namespace linefeed::cli {
 
-/// Construct before any thread starts: SIGINT, SIGTERM and SIGHUP are blocked from then on, in threads to come as well.
+/// Construct before any thread starts: SIGINT, SIGTERM, SIGHUP, SIGQUIT and SIGTSTP are blocked from then on, in
+/// threads to come as well, and SIGPIPE is ignored.
 class SignalWatch {
 public:
     SignalWatch();

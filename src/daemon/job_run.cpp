@@ -98,6 +98,7 @@ void JobRun::on_unreachable(const std::string& reason) {
 }
 
 void JobRun::end(const feeder::End& end) {
+    LINEFEED_ASSERT(!finished());
     outcome_ = end.outcome;
     push_cumulative();
     push(end);

@@ -57,6 +57,7 @@ Result<std::optional<OpenIssue>> find_open_issue(spool::Spool& spool, spool::Job
     issue.facts = {started.entry.range.first(), issue.records.first().previous(),
                    issue.records.last(),        start->serial_number,
                    start->total_before,         start->last_printed_before};
+    issue.facts.last = issue.run_range.last();
     return std::optional<OpenIssue>{issue};
 }
 

@@ -68,7 +68,7 @@ void StoreWork::settle(const feeder::Settle& verdict) {
     const auto done = verdict.earlier_run ? keeper_.settle_earlier(verdict) : keeper_.settle(verdict);
     if (!done) {
         fail(done.error());
-    } else if (!verdict.earlier_run) {
+    } else {
         replies_.emplace_back(Settled{});
     }
 }

@@ -89,7 +89,7 @@ public:
     void on_refused(OutcomeCode why, Actions& out);
     void on_durable(RecordNumber through, Instant now, Actions& out);
     void on_supplied(RecordNumber through, Instant now, Actions& out);
-    /// The Settle of this run is durable.
+    /// A Settle is durable.
     void on_settled(Actions& out);
     void on_storage_failed(Instant now, Actions& out);
 
@@ -125,7 +125,7 @@ private:
     void identified(Instant now, Actions& out);
     void located(Instant now, Actions& out);
     [[nodiscard]] bool prints_earlier_run() const;
-    [[nodiscard]] bool settle_earlier(Instant now, Actions& out);
+    [[nodiscard]] bool settle_earlier(Actions& out);
     void locate_again(Instant now, Actions& out);
     void check_ready(Instant now, Actions& out);
     void check_errors(Instant now, Actions& out);
@@ -162,6 +162,7 @@ private:
     void judge_status(Instant now, Actions& out);
     void judge(Instant now, Actions& out);
     [[nodiscard]] OutcomeCode cause_of_stop() const;
+    void clear(Actions& out);
     void end(OutcomeCode code, Actions& out);
 
     FeederSettings settings_;
@@ -203,6 +204,8 @@ private:
     bool any_sent_ = false;
     bool earlier_settled_ = false; ///< Settle of the earlier run is out
     bool fifo_is_ours_ = false;    ///< it was seen empty after `!FF`, or is taken over: it holds nothing but this run
+    bool flush_owed_ = false;      ///< its records are settled and may still lie in the FIFO
+    int settles_pending_ = 0;      ///< Settles that the ledger has not acknowledged
     bool settled_ = false;         ///< Settle of this run is out
     std::int32_t error_noticed_ = 0;
     RecordNumber confirmed_through_;

@@ -50,14 +50,14 @@ void Feeder::located(Instant now, Actions& out) {
     }
     // What lies in the FIFO could still be printed by hand, before it may be flushed: its fate is settled at the last
     // moment.
-    if (mail_.entries == 0 && !settle_earlier(now, out)) {
+    if (mail_.entries == 0 && !settle_earlier(out)) {
         return;
     }
     check_ready(now, out);
 }
 
 /// The truth about the earlier run goes to the ledger. False if nothing may be printed because of it.
-bool Feeder::settle_earlier(Instant now, Actions& out) {
+bool Feeder::settle_earlier(Actions& out) {
     if (!plan_.open || earlier_settled_) {
         return true;
     }
@@ -65,15 +65,12 @@ bool Feeder::settle_earlier(Instant now, Actions& out) {
     const Verdict verdict = reconcile(*plan_.open, evidence);
     earlier_settled_ = true;
     out.push_back(Settle{verdict, evidence, true});
+    ++settles_pending_;
+    flush_owed_ = true;
     if (verdict.in_doubt.empty() || !plan_.doubt_blocks) {
         return true;
     }
-    if (mail_.entries > 0) {
-        cause_ = OutcomeCode::records_in_doubt;
-        enter(Phase::clearing, now, settings_.stop_timeout); // nobody may print them while the operator decides
-    } else {
-        end(OutcomeCode::records_in_doubt, out);
-    }
+    end(OutcomeCode::records_in_doubt, out);
     return false;
 }
 
@@ -143,7 +140,7 @@ void Feeder::check_errors(Instant now, Actions& out) {
             locate_again(now, out);
             return;
         }
-        if (!settle_earlier(now, out)) {
+        if (!settle_earlier(out)) {
             return;
         }
     }
@@ -164,6 +161,7 @@ void Feeder::on_granted(RecordRange range, RecordNumber durable_through, Instant
     confirmed_through_ = range.first().previous();
     total_before_ = facts_.total_prints;
     left_over_ = mail_.last_printed;
+    flush_owed_ = false;
     enter(Phase::flushing, now, settings_.flush_timeout);
     out.push_back(Command{protocol::Action::flush_fifo});
     ask(Parameter::SM, now, out);

@@ -9,11 +9,27 @@ using protocol::MachineState;
 using protocol::Parameter;
 
 void Feeder::on_settled(Actions& out) {
-    if (phase_ == Phase::clearing) {
-        out.push_back(Command{protocol::Action::flush_fifo});
-        end(*cause_, out);
+    --settles_pending_;
+    if (phase_ == Phase::clearing && settles_pending_ <= 0) {
+        clear(out);
     }
 }
+
+/// The ledger knows the truth: what the printer still holds is thrown away.
+void Feeder::clear(Actions& out) {
+    flush_owed_ = false;
+    out.push_back(Command{protocol::Action::flush_fifo});
+    end(*cause_, out);
+}
+
+namespace {
+
+/// Whether the printer and the ledger are still there at such an end.
+bool can_flush(OutcomeCode code) {
+    return code != OutcomeCode::link_lost && code != OutcomeCode::no_answer && code != OutcomeCode::storage_failed;
+}
+
+} // namespace
 
 /// The line is stopped and the truth is found all the same, for people; but the ledger does not take it down, so
 /// nothing is acknowledged or flushed.
@@ -141,6 +157,7 @@ void Feeder::judge(Instant now, Actions& out) {
     const Verdict verdict = reconcile(run, evidence);
     settled_ = true;
     out.push_back(Settle{verdict, evidence, false});
+    ++settles_pending_;
 
     cause_ = cause_of_stop();
     const RecordNumber printed = verdict.printed.empty() ? confirmed_through_ : verdict.printed.last();
@@ -168,8 +185,18 @@ void Feeder::end(OutcomeCode code, Actions& out) {
     if (phase_ == Phase::ended) {
         return;
     }
+    if (flush_owed_ && can_flush(code)) {
+        // The earlier run's records are settled, and may still lie in the FIFO, where somebody could start them.
+        cause_ = code;
+        enter(Phase::clearing, {}, Duration::max());
+        if (settles_pending_ <= 0) {
+            clear(out);
+        }
+        return;
+    }
     if (fifo_is_ours_ && !any_sent_ && !settled_) { // granted, and surely not in the printer
         out.push_back(Settle{{.basis = Basis::nothing_issued}, {.mail = mail_, .printer = facts_}, false});
+        ++settles_pending_;
     }
     phase_ = Phase::ended;
     retry_at_.reset();

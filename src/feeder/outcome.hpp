@@ -38,7 +38,7 @@ enum class OutcomeCode {
 struct Outcome {
     OutcomeCode code = OutcomeCode::finished;
     protocol::MachineState machine = protocol::MachineState::standby; ///< as last reported
-    protocol::PrinterError error{};                                    ///< as last reported
+    protocol::PrinterError error{};                                   ///< as last reported
     /// At least one record of this run may have gone out.
     bool issued = false;
 

@@ -46,7 +46,15 @@ std::optional<Verdict> by_counter(const OpenRun& run, const Evidence& evidence) 
     if (last < run.printed_through) {
         return std::nullopt;
     }
-    return printed_through(run, last, false, Basis::counter);
+    // Counted as it began or as it ended, nobody knows: the print during which the memory was lost is this one or the
+    // next.
+    Verdict verdict = printed_through(run, last, false, Basis::counter);
+    if (last < run.issued_through) {
+        const RecordNumber first_doubtful = verdict.in_doubt.empty() ? last.next() : verdict.in_doubt.first();
+        verdict.in_doubt = RecordRange::closed(first_doubtful, last.next());
+        verdict.unused = behind(last.next(), run.issued_through);
+    }
+    return verdict;
 }
 
 /// What the counter makes of the claim that records up to `last` are printed.
@@ -129,6 +137,16 @@ Verdict by_number(const OpenRun& run, const Evidence& evidence) {
     assertion_failed("CounterSays", __FILE__, __LINE__);
 }
 
+/// The blank end marker behind the last record was printed, so all records were; the counter has seen it too.
+bool shows_end_marker(const OpenRun& run, const Evidence& evidence) {
+    if (!run.last || run.issued_through != *run.last || *run.last == RecordNumber::max() ||
+        evidence.mail.last_printed != run.last->next()) {
+        return false;
+    }
+    const auto prints = prints_since(run, evidence);
+    return !prints || *prints <= (*run.last - run.first).value() + 2;
+}
+
 } // namespace
 
 bool is_another_printer(const OpenRun& run, const PrinterFacts& printer) {
@@ -179,6 +197,9 @@ Verdict reconcile(const OpenRun& run, const Evidence& evidence) {
     }
     if (run.printed_through < run.first && reported == run.last_printed_before) {
         return by_left_over_number(run, evidence);
+    }
+    if (shows_end_marker(run, evidence)) {
+        return printed_through(run, run.issued_through, true, Basis::mail_status);
     }
     const RecordNumber least = std::max(run.first, run.printed_through);
     return least <= reported && reported <= run.issued_through ? by_number(run, evidence) : all_in_doubt(run);

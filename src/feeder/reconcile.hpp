@@ -31,6 +31,8 @@ struct OpenRun {
     std::string serial_number;                 ///< of the printer, as the run began; empty = unknown
     std::optional<std::uint32_t> total_before; ///< total print counter as the run began
     RecordNumber last_printed_before; ///< `=SM`, last printed record number as the run began: left over from before
+    /// The last record of the run; absent = unknown. Behind it an end marker may have been printed.
+    std::optional<RecordNumber> last{};
 
     friend bool operator==(const OpenRun&, const OpenRun&) = default;
 };

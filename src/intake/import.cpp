@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <filesystem>
 #include <optional>
 #include <system_error>
@@ -24,7 +25,11 @@ public:
         , spool_(spool)
         , spec_(spec)
         , options_(options)
-        , encoder_(options.charsets, options.escapes, options.properties) {}
+        , encoder_(options.charsets, options.escapes, options.properties) {
+        report_.columns = source.column_names();
+        report_.charsets = options.charsets;
+        report_.charsets.resize(report_.columns.size(), options.charsets.front());
+    }
 
     [[nodiscard]] Result<ImportOutcome> run();
 
@@ -80,6 +85,7 @@ Result<void> Import::take(const Row& row) {
         return {};
     }
     ++encoded_;
+    report_.rows_with_empty_field += std::ranges::any_of(row.fields, &std::string_view::empty) ? 1U : 0U;
     page_.ends.push_back(static_cast<std::uint32_t>(page_.frames.size()));
     if (page_.ends.size() >= page_records || page_.frames.size() >= page_bytes) {
         return flush_page();
@@ -178,6 +184,10 @@ Result<ImportOutcome> import_source(RowSource& source, spool::Spool& spool, cons
 
 std::string to_json(const ImportReport& report) {
     nlohmann::json json{{"rows", report.rows}, {"records", report.records}, {"bad_rows", report.bad_rows}};
+    json["columns"] = nlohmann::json::array();
+    for (std::size_t i = 0; i < report.columns.size(); ++i) {
+        json["columns"].push_back({{"name", report.columns[i]}, {"encoding", protocol::to_string(report.charsets[i])}});
+    }
     json["reported"] = nlohmann::json::array();
     for (const BadRow& row : report.reported) {
         json["reported"].push_back({{"line", row.line}, {"column", row.column}, {"reason", row.reason}});

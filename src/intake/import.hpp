@@ -28,10 +28,14 @@ struct BadRow {
 };
 
 struct ImportReport {
-    std::uint64_t rows = 0;       ///< read
-    std::uint64_t records = 0;    ///< stored
-    std::uint64_t bad_rows = 0;   ///< not stored
-    std::vector<BadRow> reported; ///< the first max_reported_rows of them
+    std::uint64_t rows = 0;     ///< read
+    std::uint64_t records = 0;  ///< stored
+    std::uint64_t bad_rows = 0; ///< not stored
+    std::uint64_t rows_with_empty_field =
+        0;                              ///< stored; the printer may show its placeholder for an empty text (Annex B)
+    std::vector<std::string> columns{}; ///< names, one for each field of a record
+    std::vector<protocol::Charset> charsets{}; ///< of the columns
+    std::vector<BadRow> reported;              ///< the first max_reported_rows of them
 };
 
 struct ImportOptions {
@@ -58,7 +62,8 @@ struct ImportOutcome {
 [[nodiscard]] Result<ImportOutcome> import_source(RowSource& source, spool::Spool& spool, const spool::JobSpec& spec,
                                                   const ImportOptions& options);
 
-/// The report as JSON: {"rows":…,"records":…,"bad_rows":…,"reported":[{"line":…,"column":…,"reason":…}]}.
+/// The report as JSON: {"rows":…,"records":…,"bad_rows":…,"columns":[{"name":…,"encoding":…}],
+/// "reported":[{"line":…,"column":…,"reason":…}]}.
 [[nodiscard]] std::string to_json(const ImportReport& report);
 
 } // namespace linefeed::intake

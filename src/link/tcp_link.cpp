@@ -44,6 +44,9 @@ void TcpLink::try_next_endpoint() {
     });
     socket_.async_connect(endpoints_[attempt], [this](const error_code& error) {
         timer_.cancel();
+        if (given_up_) {
+            return;
+        }
         if (!error && socket_.is_open()) {
             connected();
             return;
@@ -174,6 +177,7 @@ void TcpLink::broken() {
 void TcpLink::close() {
     open_ = false;
     error_code ignored;
+    given_up_ = true;
     // Closing with unread bytes resets the connection, which could cost the printer our last command: shut down and
     // read them first.
     socket_.shutdown(asio::ip::tcp::socket::shutdown_send, ignored);
@@ -187,7 +191,7 @@ void TcpLink::close() {
 }
 
 void TcpLink::abort() {
-    endpoint_ = endpoints_.size();
+    given_up_ = true;
     close();
 }
 

@@ -71,6 +71,7 @@ private:
     Duration connect_timeout_{};
     std::string last_error_;
     bool open_ = false;
+    bool given_up_ = false; ///< closed for good, also while connecting
 
     static constexpr std::size_t receive_bytes = 16 * 1024;
     std::array<char, receive_bytes> received_{};

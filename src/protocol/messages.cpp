@@ -16,8 +16,13 @@ constexpr std::size_t code_bytes = 2;
 
 Message read_machine_status(ParameterReader& in, EscapeMode) {
     MachineStatus status;
-    status.nozzle = static_cast<NozzleState>(in.number("a nozzle state", 0, 5));
+    // In standby only the machine state is valid; newer firmware may know more nozzle states (RS in section 4).
+    const auto nozzle = in.optional_number("a nozzle state").value_or(0);
+    status.nozzle = nozzle <= 5 ? static_cast<NozzleState>(nozzle) : NozzleState::invalid;
     status.machine = static_cast<MachineState>(in.number("a machine state", 1, 6));
+    if (status.machine == MachineState::standby) {
+        return MachineStatus{};
+    }
     status.error.raw = in.signed_number("an error number");
     status.cover_open = in.optional_number("0 or 1").value_or(0) != 0;
     status.speed = in.optional_number("a speed").value_or(0);

@@ -15,6 +15,7 @@
 #include <optional>
 #include <string_view>
 #include <variant>
+#include <vector>
 
 namespace linefeed::session {
 
@@ -41,8 +42,8 @@ using Effects = BoundedList<Effect, max_effects>;
 struct SessionSettings {
     feeder::FeederSettings feeder;
     protocol::EscapeMode escapes = protocol::EscapeMode::backslash;
-    /// Fields of a record; the end marker has as many.
-    std::size_t record_fields = 1;
+    /// The charsets of a record's fields; the end marker has as many, each a blank.
+    std::vector<protocol::Charset> charsets{protocol::Charset::latin1};
     /// An inquiry unanswered for this long is a printer that does not answer.
     Duration reply_timeout = std::chrono::seconds{2};
     /// How long the last commands (`!ST`, `!EQ`) may take to be written before the link is closed all the same.

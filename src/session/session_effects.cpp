@@ -3,6 +3,8 @@
 #include "session/session.hpp"
 
 #include <string>
+#include <string_view>
+#include <vector>
 
 namespace linefeed::session {
 
@@ -12,12 +14,11 @@ namespace {
 
 /// A record of blanks. An empty text would not do: the printer shows the job's placeholder for it (Annex B, "zero
 /// string").
-void append_end_marker(std::string& out, RecordNumber number, std::size_t fields) {
-    std::string payload = "MR" + std::to_string(number.value());
-    for (std::size_t i = 0; i < fields; ++i) {
-        payload += "\t ";
-    }
-    protocol::append_frame(out, protocol::Group::parameter, payload);
+void append_end_marker(std::string& out, RecordNumber number, const std::vector<protocol::Charset>& charsets,
+                       protocol::EscapeMode escapes) {
+    const std::vector<std::string_view> blanks(charsets.size(), " ");
+    const auto appended = protocol::MailRecordEncoder{charsets, escapes}.append(out, number, blanks);
+    LINEFEED_ASSERT(appended.has_value());
 }
 
 } // namespace
@@ -52,7 +53,8 @@ void Session::carry_out(const feeder::Action& action, Instant now, Effects& out)
         }
         void operator()(const feeder::SendRecords& send) const { session.pages_.stage(send.range, session.outbox_); }
         void operator()(const feeder::SendEndMarker& marker) const {
-            append_end_marker(session.outbox_.command_text(), marker.number, session.settings_.record_fields);
+            append_end_marker(session.outbox_.command_text(), marker.number, session.settings_.charsets,
+                              session.settings_.escapes);
             session.outbox_.staged_command();
         }
         void operator()(const feeder::Settle& settle) const { out.push_back(settle); }

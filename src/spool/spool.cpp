@@ -87,7 +87,8 @@ Result<void> check_small_tables(Database& database) {
         }
         if (*answer != "ok") {
             const auto last_line = answer->rfind('\n') + 1; // 0 if there is only one
-            return Failure{FailureKind::storage, database.path() + ": the spool is damaged: " + answer->substr(last_line)};
+            return Failure{FailureKind::storage,
+                           database.path() + ": the spool is damaged: " + answer->substr(last_line)};
         }
     }
     return {};
@@ -175,8 +176,13 @@ Result<Spool> Spool::open_for_reading(const std::filesystem::path& path, SpoolOp
     if (*version == 0) {
         return Failure{FailureKind::usage, path.string() + " is empty: it is no spool"};
     }
-    auto state = std::make_unique<State>(State{FileLock{}, std::move(*database), std::move(options.wall_clock_ns),
-                                               Failure{FailureKind::storage, "it is open for reading only"}, 0, {}, {}});
+    auto state = std::make_unique<State>(State{FileLock{},
+                                               std::move(*database),
+                                               std::move(options.wall_clock_ns),
+                                               Failure{FailureKind::usage, "it is open for reading only"},
+                                               0,
+                                               {},
+                                               {}});
     if (auto done = state->load_end_of_chain(); !done) {
         return done.error();
     }

@@ -131,8 +131,7 @@ Result<bool> Spool::State::is_run_of(JobLedger& ledger, JobId job, RunId run) {
     if (!statement) {
         return statement.error();
     }
-    auto found =
-        statement->bind(1, static_cast<std::int64_t>(run)).bind(2, static_cast<std::int64_t>(job)).step();
+    auto found = statement->bind(1, static_cast<std::int64_t>(run)).bind(2, static_cast<std::int64_t>(job)).step();
     if (found && *found) {
         ledger.known_run = run;
     }

@@ -42,6 +42,8 @@ struct Spool::State {
     [[nodiscard]] Result<void> remove_job_in_steps(JobId id);
 
     [[nodiscard]] Result<void> load_end_of_chain();
+    /// verify_ledger() within a transaction.
+    [[nodiscard]] Result<std::int64_t> verify();
     /// The ledger state of a job, from memory or the database. Valid until the next call.
     [[nodiscard]] Result<JobLedger*> job_ledger(JobId id);
     /// Whether `run` is a run of the job; remembers it.

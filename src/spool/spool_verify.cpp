@@ -69,11 +69,28 @@ Result<std::vector<JobId>> jobs_with_segments(Database& database) {
 } // namespace
 
 Result<std::int64_t> Spool::verify_ledger() {
-    const std::string& path = state_->database->path();
+    // One view of everything, also while another process appends rows.
+    if (auto begun = state_->database->execute("BEGIN"); !begun) {
+        return begun.error();
+    }
+    auto verified = state_->verify();
+    if (auto ended = state_->database->execute("COMMIT"); !ended) {
+        return ended.error();
+    }
+    return verified;
+}
+
+Result<std::int64_t> Spool::State::verify() {
+    const std::string& path = database->path();
+    if (broken && broken->kind == FailureKind::usage) { // open for reading: the writer has gone on since
+        if (auto loaded = load_end_of_chain(); !loaded) {
+            return loaded.error();
+        }
+    }
     Verifier verifier;
     {
         static const std::string sql = std::string{select_ledger} + "ORDER BY l.sequence";
-        auto statement = state_->database->prepare(sql.c_str());
+        auto statement = database->prepare(sql.c_str());
         if (!statement) {
             return statement.error();
         }
@@ -94,11 +111,11 @@ Result<std::int64_t> Spool::verify_ledger() {
             }
         }
     }
-    if (verifier.sequence() != state_->last_sequence || verifier.hash() != state_->last_hash) {
+    if (verifier.sequence() != last_sequence || verifier.hash() != last_hash) {
         return Failure{FailureKind::storage, path + ": ledger row " + std::to_string(verifier.sequence() + 1) +
                                                  " is missing: it was there when the spool was opened"};
     }
-    auto jobs = jobs_with_segments(*state_->database);
+    auto jobs = jobs_with_segments(*database);
     if (!jobs) {
         return jobs.error();
     }
@@ -106,7 +123,7 @@ Result<std::int64_t> Spool::verify_ledger() {
         jobs->push_back(job);
     }
     for (const JobId job : *jobs) {
-        const auto stored = state_->read_segments(job);
+        const auto stored = read_segments(job);
         if (!stored) {
             return stored.error();
         }

@@ -8,6 +8,27 @@ import harness
 from harness import names, rows
 
 
+class Judge(harness.TestCase):
+    """The judge of all these tests does find what it is there to find."""
+
+    def test_doubles_gaps_order_and_wrong_texts(self):
+        expected = names(10)
+        self.judge(expected, list(expected))
+        swapped = [*expected[:3], expected[4], expected[3], *expected[5:]]
+        for printed in (expected[:-1], expected[1:], expected + expected[-1:], expected[:4] + expected[3:], expected[:4] + expected[5:],
+                        swapped, [*expected[:9], (10, "somebody else")], []):
+            with self.assertRaises(AssertionError):
+                self.judge(expected, printed)
+
+    def test_an_untidy_printer(self):
+        good = {"doubles": 0, "gaps": 0, "underruns": 0, "damaged_frames": 0, "highest_fill": 256, "errors": {"1223": 1}}
+        self.assert_clean(good)
+        for bad in ({"doubles": 1}, {"gaps": 1}, {"underruns": 1}, {"damaged_frames": 1}, {"highest_fill": 257}, {"errors": {"1015": 1}},
+                    {"errors": {"5043": 1}}):
+            with self.assertRaises(AssertionError):
+                self.assert_clean({**good, **bad})
+
+
 class PrintCsv(harness.TestCase):
     def test_three_thousand_records_at_a_thousand_a_second(self):
         records = names(3000)

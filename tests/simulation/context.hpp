@@ -11,13 +11,13 @@
 namespace linefeed::simulation {
 
 struct Counts {
-    std::uint64_t prints = 0;          ///< of the job
-    std::uint64_t other_prints = 0;    ///< other jobs, end markers
-    std::uint64_t underruns = 0;       ///< all of them explained
+    std::uint64_t prints = 0;       ///< of the job
+    std::uint64_t other_prints = 0; ///< other jobs, end markers
+    std::uint64_t underruns = 0;    ///< all of them explained
     std::uint64_t runs = 0;
-    std::uint64_t starts = 0;          ///< of the program
-    std::uint64_t in_doubt = 0;        ///< records named in doubt
-    Duration printing{0};              ///< time in state printing
+    std::uint64_t starts = 0;   ///< of the program
+    std::uint64_t in_doubt = 0; ///< records named in doubt
+    Duration printing{0};       ///< time in state printing
     Duration simulated{0};
     std::array<std::uint64_t, fault_kinds> faults{};
 
@@ -47,7 +47,9 @@ struct Context {
     Trace trace;
     Counts counts;
 
-    void after(Duration delay, EventKind kind, std::uint64_t a = 0, std::uint64_t b = 0) { queue.put(now + delay, kind, a, b); }
+    void after(Duration delay, EventKind kind, std::uint64_t a = 0, std::uint64_t b = 0) {
+        queue.put(now + delay, kind, a, b);
+    }
 };
 
 } // namespace linefeed::simulation

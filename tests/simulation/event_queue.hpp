@@ -1,4 +1,5 @@
-// Virtual time: one queue of events, ordered by instant and, at the same instant, by the order in which they were put in.
+// Virtual time: one queue of events, ordered by instant and, at the same instant, by the order in which they were put
+// in.
 #pragma once
 
 #include "base/time.hpp"
@@ -35,7 +36,9 @@ struct Event {
 
 class EventQueue {
 public:
-    void put(Instant at, EventKind kind, std::uint64_t a = 0, std::uint64_t b = 0) { heap_.push({at, ++sequence_, kind, a, b}); }
+    void put(Instant at, EventKind kind, std::uint64_t a = 0, std::uint64_t b = 0) {
+        heap_.push({at, ++sequence_, kind, a, b});
+    }
     [[nodiscard]] bool empty() const { return heap_.empty(); }
     /// Instant::max() when empty.
     [[nodiscard]] Instant next_at() const { return heap_.empty() ? Instant::max() : heap_.top().at; }
@@ -47,7 +50,9 @@ public:
 
 private:
     struct Later {
-        bool operator()(const Event& a, const Event& b) const { return a.at != b.at ? a.at > b.at : a.sequence > b.sequence; }
+        bool operator()(const Event& a, const Event& b) const {
+            return a.at != b.at ? a.at > b.at : a.sequence > b.sequence;
+        }
     };
     std::priority_queue<Event, std::vector<Event>, Later> heap_;
     std::uint64_t sequence_ = 0;

@@ -25,7 +25,8 @@ Faults::Faults(Context& context, Judge& judge, Line& line, Wire& wire, Host& hos
 
 void Faults::schedule() {
     if (left_ > 0) {
-        context_.after(random_.spread(context_.scenario.fault_gap.low, context_.scenario.fault_gap.high), EventKind::next_fault);
+        context_.after(random_.spread(context_.scenario.fault_gap.low, context_.scenario.fault_gap.high),
+                       EventKind::next_fault);
     }
 }
 
@@ -59,6 +60,16 @@ void Faults::repair_later(Fault fault, Duration low, Duration high, std::uint64_
     context_.after(random_.spread(low, high), EventKind::fault_ends, static_cast<std::uint64_t>(fault), detail);
 }
 
+bool Faults::two_disasters(bool& this_one, bool other_one) {
+    if (host_.running() && host_.phase() == feeder::Phase::printing && interruption_ != context_.counts.runs) {
+        interruption_ = context_.counts.runs;
+        memory_lost_ = others_printed_ = false;
+        other_one = false;
+    }
+    this_one = this_one || !other_one;
+    return other_one;
+}
+
 bool Faults::cause(Fault fault) {
     switch (fault) {
     case Fault::operator_stop:
@@ -71,7 +82,8 @@ bool Faults::cause(Fault fault) {
     case Fault::another_job:
     case Fault::another_printer:
     case Fault::second_client:
-    case Fault::belt_pause: return cause_at_printer(fault);
+    case Fault::belt_pause:
+        return cause_at_printer(fault);
     case Fault::stop_by_linefeed:
     case Fault::process_kill:
     case Fault::kill_in_step:
@@ -79,10 +91,12 @@ bool Faults::cause(Fault fault) {
     case Fault::both_power_loss:
     case Fault::host_pause:
     case Fault::slow_disk:
-    case Fault::disk_full: return cause_at_host(fault);
+    case Fault::disk_full:
+        return cause_at_host(fault);
     case Fault::link_cut:
     case Fault::link_silent:
-    case Fault::link_stall: return cause_on_the_way(fault);
+    case Fault::link_stall:
+        return cause_on_the_way(fault);
     }
     return false;
 }
@@ -90,9 +104,13 @@ bool Faults::cause(Fault fault) {
 bool Faults::cause_at_printer(Fault fault) {
     const PrinterModel& printer = line_.look();
     const bool printing = printer.printing();
-    const auto press = [this](Action action) { line_.act([action](PrinterModel& model, Instant now) { model.press(action, now); }); };
+    const auto press = [this](Action action) {
+        line_.act([action](PrinterModel& model, Instant now) { model.press(action, now); });
+    };
     switch (fault) {
-    case Fault::operator_stop: press(Action::stop_print); return printing;
+    case Fault::operator_stop:
+        press(Action::stop_print);
+        return printing;
     case Fault::stop_and_go:
         if (printing) {
             press(Action::stop_print);
@@ -108,26 +126,44 @@ bool Faults::cause_at_printer(Fault fault) {
         }
         return may;
     }
-    case Fault::printer_error: line_.act([](PrinterModel& model, Instant now) { model.raise_error(10202, now); }); return true;
-    case Fault::cover_opened: line_.act([](PrinterModel& model, Instant now) { model.open_cover(now); }); return true;
-    case Fault::nozzle_closed: press(Action::nozzle_close); return true;
-    case Fault::printer_restart: line_.act([](PrinterModel& model, Instant now) { model.power_cycle(now); }); return true;
-    case Fault::another_job: return another_job();
+    case Fault::printer_error:
+        line_.act([](PrinterModel& model, Instant now) { model.raise_error(10202, now); });
+        return true;
+    case Fault::cover_opened:
+        line_.act([](PrinterModel& model, Instant now) { model.open_cover(now); });
+        return true;
+    case Fault::nozzle_closed:
+        press(Action::nozzle_close);
+        return true;
+    case Fault::printer_restart:
+        if (two_disasters(memory_lost_, others_printed_)) {
+            return false;
+        }
+        line_.act([](PrinterModel& model, Instant now) { model.power_cycle(now); });
+        return true;
+    case Fault::another_job:
+        return another_job();
     case Fault::another_printer:
         line_.exchange_printer();
         if (random_.chance(0.5)) {
             repair_later(fault, 1s, 200s);
         }
         return true;
-    case Fault::second_client: ask_as_second_client(); return true;
-    case Fault::belt_pause: line_.pause_belt(random_.spread(Duration{10ms}, Duration{60s})); return true;
-    default: return false;
+    case Fault::second_client:
+        ask_as_second_client();
+        return true;
+    case Fault::belt_pause:
+        line_.pause_belt(random_.spread(Duration{10ms}, Duration{60s}));
+        return true;
+    default:
+        return false;
     }
 }
 
 bool Faults::another_job() {
     const auto status = line_.look().machine_status();
-    if (host_.running() || status.machine != MachineState::ready_to_print || !host_.ending().in_doubt.empty()) {
+    if (host_.running() || status.machine != MachineState::ready_to_print || !host_.ending().in_doubt.empty() ||
+        two_disasters(others_printed_, memory_lost_)) {
         return false;
     }
     const auto count = static_cast<std::uint32_t>(random_.spread(1, context_.scenario.printer.depth - 1));
@@ -138,7 +174,8 @@ bool Faults::another_job() {
 }
 
 void Faults::ask_as_second_client() {
-    static constexpr const char* frames[]{"^0?SM", "^0?SM", "^0?RS", "^0?CC", "^0?VS", "^0!LN", "^0!EM", "^0!EQ", "^0!US", "^0?EL"};
+    static constexpr const char* frames[]{"^0?SM", "^0?SM", "^0?RS", "^0?CC", "^0?VS",
+                                          "^0!LN", "^0!EM", "^0!EQ", "^0!US", "^0?EL"};
     for (std::uint64_t i = random_.between(1, 8); i > 0; --i) {
         line_.other_client(frames[random_.below(std::size(frames))]);
     }
@@ -147,10 +184,21 @@ void Faults::ask_as_second_client() {
 bool Faults::cause_at_host(Fault fault) {
     const bool running = host_.running();
     switch (fault) {
-    case Fault::stop_by_linefeed: host_.request_stop(); return running;
-    case Fault::process_kill: host_.kill(); return running;
-    case Fault::kill_in_step: host_.kill(random_.between(1, 12)); return running;
-    case Fault::both_power_loss: line_.act([](PrinterModel& model, Instant now) { model.power_cycle(now); }); [[fallthrough]];
+    case Fault::stop_by_linefeed:
+        host_.request_stop();
+        return running;
+    case Fault::process_kill:
+        host_.kill();
+        return running;
+    case Fault::kill_in_step:
+        host_.kill(random_.between(1, 12));
+        return running;
+    case Fault::both_power_loss:
+        if (two_disasters(memory_lost_, others_printed_)) {
+            return false;
+        }
+        line_.act([](PrinterModel& model, Instant now) { model.power_cycle(now); });
+        [[fallthrough]];
     case Fault::host_power_loss:
         host_.lose_power();
         operator_.set_host_power(false);
@@ -172,7 +220,8 @@ bool Faults::cause_at_host(Fault fault) {
         RamDisk::instance().set_full(true);
         repair_later(fault, 10ms, 100s);
         return true;
-    default: return false;
+    default:
+        return false;
     }
 }
 
@@ -200,13 +249,22 @@ void Faults::repair(Fault fault, std::uint64_t) {
         line_.act([](PrinterModel& model, Instant now) { model.press(Action::start_print, now); });
         excuse_for(5s); // what was in the FIFO is gone
         return;
-    case Fault::another_printer: line_.exchange_printer(); return;
+    case Fault::another_printer:
+        line_.exchange_printer();
+        return;
     case Fault::host_power_loss:
-    case Fault::both_power_loss: operator_.set_host_power(true); return;
-    case Fault::disk_full: RamDisk::instance().set_full(false); return;
+    case Fault::both_power_loss:
+        operator_.set_host_power(true);
+        return;
+    case Fault::disk_full:
+        RamDisk::instance().set_full(false);
+        return;
     case Fault::link_cut:
-    case Fault::link_silent: wire_.set_down(false); return;
-    default: return;
+    case Fault::link_silent:
+        wire_.set_down(false);
+        return;
+    default:
+        return;
     }
 }
 

@@ -1,4 +1,5 @@
-// What goes wrong, when: draws faults by the weights of the scenario, causes them, and repairs what does not repair itself.
+// What goes wrong, when: draws faults by the weights of the scenario, causes them, and repairs what does not repair
+// itself.
 #pragma once
 
 #include "host.hpp"
@@ -23,6 +24,9 @@ public:
 
 private:
     void schedule();
+    /// The printer loses its memory and prints for somebody else between two runs: then its counter alone would have to
+    /// tell whose prints they were. Known limit: the simulation lets only one of the two happen.
+    [[nodiscard]] bool two_disasters(bool& this_one, bool other_one);
     [[nodiscard]] Fault draw();
     /// False if it cannot happen now.
     [[nodiscard]] bool cause(Fault fault);
@@ -44,6 +48,9 @@ private:
     std::uint32_t left_;
     std::uint32_t under_repair_ = 0;
     Instant excused_until_{};
+    std::uint64_t interruption_ = 0; ///< starts of the program when the following were set
+    bool memory_lost_ = false;
+    bool others_printed_ = false;
 };
 
 } // namespace linefeed::simulation

@@ -1,7 +1,6 @@
 #include "host.hpp"
 
 #include "host_run.hpp"
-
 #include "protocol/mail_record.hpp"
 
 #include <array>
@@ -18,7 +17,8 @@ namespace {
 /// Only the lock of the spool is a real file; all else is on the RAM disk.
 std::string spool_path() {
     static const struct Directory {
-        std::string path = std::filesystem::temp_directory_path() / ("linefeed_simulation." + std::to_string(::getpid()));
+        std::string path =
+            std::filesystem::temp_directory_path() / ("linefeed_simulation." + std::to_string(::getpid()));
         Directory() { std::filesystem::create_directory(path); }
         ~Directory() { std::filesystem::remove_all(path); }
     } directory;
@@ -44,7 +44,8 @@ bool Host::open_spool() {
     if (spool_) {
         return true;
     }
-    auto opened = spool::Spool::open(path_, {[this] { return wall_ns_ + context_.now.time_since_epoch().count(); }, ram_disk_vfs});
+    auto opened = spool::Spool::open(
+        path_, {[this] { return wall_ns_ + context_.now.time_since_epoch().count(); }, ram_disk_vfs});
     if (!opened) {
         context_.trace.say(context_.now, "spool", opened.error().message);
         return false;
@@ -71,8 +72,11 @@ void Host::import_job() {
         scenario.text_of(number, text);
         const std::size_t tab = text.find('\t');
         const std::array<std::string_view, 2> fields{std::string_view{text}.substr(0, tab),
-                                                     tab == std::string::npos ? "" : std::string_view{text}.substr(tab + 1)};
-        LINEFEED_ASSERT(encoder.append(page.frames, RecordNumber{number}, {fields.data(), tab == std::string::npos ? 1U : 2U}).has_value());
+                                                     tab == std::string::npos ? ""
+                                                                              : std::string_view{text}.substr(tab + 1)};
+        LINEFEED_ASSERT(
+            encoder.append(page.frames, RecordNumber{number}, {fields.data(), tab == std::string::npos ? 1U : 2U})
+                .has_value());
         page.ends.push_back(static_cast<std::uint32_t>(page.frames.size()));
         if (page.ends.size() == scenario.page_records || number == scenario.last()) {
             LINEFEED_ASSERT(import->add(page).has_value());
@@ -117,7 +121,8 @@ void Host::next_run() {
             word_counts_ = false;
             const auto job = spool_->job(job_);
             LINEFEED_ASSERT(job && *job);
-            if (const auto settled = cli::settle_by_operator(*spool_, **job, word_, protocol::EscapeMode::backslash); !settled) {
+            if (const auto settled = cli::settle_by_operator(*spool_, **job, word_, protocol::EscapeMode::backslash);
+                !settled) {
                 if (settled.error().kind == FailureKind::usage) {
                     judge_.violation("the operator's word was refused: " + settled.error().message);
                 }
@@ -159,7 +164,8 @@ void Host::end_process(OutcomeCode code) {
     }
     spool_.reset();
     RamDisk::instance().process_gone();
-    context_.after(random_.spread(Duration{std::chrono::milliseconds{20}}, Duration{std::chrono::seconds{40}}), EventKind::operator_acts);
+    context_.after(random_.spread(Duration{std::chrono::milliseconds{20}}, Duration{std::chrono::seconds{40}}),
+                   EventKind::operator_acts);
 }
 
 void Host::check_spool() {
@@ -199,7 +205,9 @@ void Host::check_spool() {
 void Host::request_stop() {
     if (run_ && !run_->finished) {
         interrupted_ = true;
-        call([](session::Session& session, Instant now, session::Effects& effects) { session.request_stop(now, effects); });
+        call([](session::Session& session, Instant now, session::Effects& effects) {
+            session.request_stop(now, effects);
+        });
     }
 }
 
@@ -228,7 +236,8 @@ void Host::die() {
     RamDisk::instance().process_gone();
     paused_until_ = {};
     ending_ = {OutcomeCode::link_lost, {}, false}; // the operator is told nothing
-    context_.after(random_.spread(Duration{std::chrono::milliseconds{50}}, Duration{std::chrono::seconds{60}}), EventKind::operator_acts);
+    context_.after(random_.spread(Duration{std::chrono::milliseconds{50}}, Duration{std::chrono::seconds{60}}),
+                   EventKind::operator_acts);
 }
 
 void Host::lose_power() {

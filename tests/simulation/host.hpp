@@ -1,5 +1,6 @@
-// The host: the program `linefeed print` as the product drives session, store and ledger (src/daemon/job_run.cpp, src/cli/print_command.cpp),
-// as a process that can be paused and killed at any step, on a machine that can lose its power.
+// The host: the program `linefeed print` as the product drives session, store and ledger (src/daemon/job_run.cpp,
+// src/cli/print_command.cpp), as a process that can be paused and killed at any step, on a machine that can lose its
+// power.
 #pragma once
 
 #include "cli/operator_word.hpp"

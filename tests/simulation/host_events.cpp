@@ -1,4 +1,5 @@
-// What happens to a run: connections, bytes, completions, time; carried out in the order of link::TcpLink and daemon::JobRun.
+// What happens to a run: connections, bytes, completions, time; carried out in the order of link::TcpLink and
+// daemon::JobRun.
 #include "host_run.hpp"
 
 #include <algorithm>
@@ -12,7 +13,7 @@ using session::Session;
 
 namespace {
 
-constexpr std::size_t request_ring = 256;      ///< daemon::Store::ring_capacity
+constexpr std::size_t request_ring = 256; ///< daemon::Store::ring_capacity
 constexpr Duration connect_timeout = std::chrono::seconds{3};
 
 } // namespace
@@ -38,12 +39,14 @@ void Host::begin_run(const std::optional<daemon::OpenIssue>& open) {
     const std::uint64_t generation = ++generation_;
     run_ = std::make_unique<Run>(
         settings, plan,
-        VirtualStore{context_, random_.fork(generation),
-                     daemon::StoreWork{*spool_, job_, daemon::LedgerKeeper{*spool_, job_, wanted_, "tcp://printer:3000", open}},
-                     generation},
+        VirtualStore{
+            context_, random_.fork(generation),
+            daemon::StoreWork{*spool_, job_, daemon::LedgerKeeper{*spool_, job_, wanted_, "tcp://printer:3000", open}},
+            generation},
         generation);
     const bool reachable = !wire_.down();
-    context_.after(reachable ? 2 * wire_.latency() : connect_timeout, EventKind::connected, generation, reachable ? 1 : 0);
+    context_.after(reachable ? 2 * wire_.latency() : connect_timeout, EventKind::connected, generation,
+                   reachable ? 1 : 0);
 }
 
 void Host::connected(std::uint64_t generation, std::uint64_t success) {
@@ -276,7 +279,9 @@ void Host::take_replies() {
         if (run_->finished) {
             continue;
         }
-        call([&reply](Session& session, Instant now, Effects& effects) { daemon::deliver(reply, session, now, effects); });
+        call([&reply](Session& session, Instant now, Effects& effects) {
+            daemon::deliver(reply, session, now, effects);
+        });
         if (is_current(generation)) {
             push_cumulative();
         }

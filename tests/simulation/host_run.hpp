@@ -6,7 +6,8 @@
 namespace linefeed::simulation {
 
 struct Host::Run {
-    Run(const session::SessionSettings& settings, const feeder::FeederPlan& plan, VirtualStore store_, std::uint64_t generation_)
+    Run(const session::SessionSettings& settings, const feeder::FeederPlan& plan, VirtualStore store_,
+        std::uint64_t generation_)
         : session(settings, plan)
         , store(std::move(store_))
         , generation(generation_) {}

@@ -23,7 +23,8 @@ void Judge::violation(std::string what) {
 
 Judge::Product* Judge::product(RecordNumber number) {
     const std::uint32_t first = context_.scenario.first();
-    return number.value() < first || number.value() > context_.scenario.last() ? nullptr : &products_[number.value() - first];
+    return number.value() < first || number.value() > context_.scenario.last() ? nullptr
+                                                                               : &products_[number.value() - first];
 }
 
 void Judge::printed(RecordNumber number, std::string_view text) {

@@ -1,4 +1,5 @@
-// The judge stands outside the core and looks only at what stuck to the products, at the ledger, and at what the operator was told.
+// The judge stands outside the core and looks only at what stuck to the products, at the ledger, and at what the
+// operator was told.
 #pragma once
 
 #include "base/record_number.hpp"

@@ -33,7 +33,8 @@ Line::Line(Context& context, Judge& judge, Wire& wire, Random random)
 }
 
 void Line::receive(std::uint64_t connection, std::string_view bytes) {
-    auto found = std::find_if(clients_.begin(), clients_.end(), [&](const auto& it) { return it->connection == connection; });
+    auto found =
+        std::find_if(clients_.begin(), clients_.end(), [&](const auto& it) { return it->connection == connection; });
     if (found == clients_.end()) {
         clients_.push_back(std::make_unique<Client>());
         clients_.back()->connection = connection;
@@ -124,7 +125,8 @@ void Line::carry_out(simulator::Effect& effect) {
             judge_.numbers_out_of_order();
         }
     } else if (const auto* state = std::get_if<simulator::StateChanged>(&effect)) {
-        context_.trace.note(context_.now, "machine state", static_cast<std::uint64_t>(state->machine), state->cover_open ? 1 : 0);
+        context_.trace.note(context_.now, "machine state", static_cast<std::uint64_t>(state->machine),
+                            state->cover_open ? 1 : 0);
     } else if (std::holds_alternative<simulator::ConnectionsLost>(effect)) {
         context_.trace.note(context_.now, "printer restarted");
         wire_.printer_closes(random_.chance(0.5));
@@ -168,7 +170,8 @@ void Line::product() {
 
 void Line::change_belt() {
     fast_ = !fast_;
-    context_.after(random_.spread(Duration{std::chrono::milliseconds{500}}, Duration{std::chrono::seconds{30}}), EventKind::belt_changes);
+    context_.after(random_.spread(Duration{std::chrono::milliseconds{500}}, Duration{std::chrono::seconds{30}}),
+                   EventKind::belt_changes);
 }
 
 void Line::pause_belt(Duration duration) {

@@ -1,5 +1,5 @@
-// The production line: the printer at the address (and another one that may take its place), the belt with its products, the operator's
-// panel, and other programs that talk to the printer.
+// The production line: the printer at the address (and another one that may take its place), the belt with its
+// products, the operator's panel, and other programs that talk to the printer.
 #pragma once
 
 #include "context.hpp"

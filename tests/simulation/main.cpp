@@ -1,4 +1,5 @@
-// linefeed_simulation: many years of production in an afternoon. Runs seeds and prints what came of them; exit code 1 on a violation.
+// linefeed_simulation: many years of production in an afternoon. Runs seeds and prints what came of them; exit code 1
+// on a violation.
 //
 //   linefeed_simulation --seed N --trace        one seed with everything that happens
 //   linefeed_simulation --from A --count N      N seeds
@@ -38,7 +39,8 @@ std::uint64_t seed_under_way = 0;
 
 /// An assertion of the product has failed: the seed must not be lost.
 void on_abort(int) {
-    std::printf("VIOLATION seed %llu: an assertion of the program failed\n", static_cast<unsigned long long>(seed_under_way));
+    std::printf("VIOLATION seed %llu: an assertion of the program failed\n",
+                static_cast<unsigned long long>(seed_under_way));
     std::fflush(stdout);
 }
 
@@ -55,9 +57,11 @@ public:
         } else if (!options_.regressions.empty()) {
             run_list();
         } else {
-            const Duration wanted = std::chrono::duration_cast<Duration>(std::chrono::duration<double, std::ratio<3600>>{options_.hours});
+            const Duration wanted =
+                std::chrono::duration_cast<Duration>(std::chrono::duration<double, std::ratio<3600>>{options_.hours});
             const std::uint64_t count = options_.count == 0 && options_.hours == 0 ? 100 : options_.count;
-            for (std::uint64_t i = 0; (i < count || counts_.simulated < wanted) && !(options_.stop_at_first && violations_ > 0); ++i) {
+            for (std::uint64_t i = 0;
+                 (i < count || counts_.simulated < wanted) && !(options_.stop_at_first && violations_ > 0); ++i) {
                 run_one(options_.from + i);
             }
         }
@@ -106,11 +110,13 @@ private:
     void report(double wall_s) const {
         const double simulated_s = std::chrono::duration<double>(counts_.simulated).count();
         const double printing_s = std::chrono::duration<double>(counts_.printing).count();
-        std::printf("%llu seeds, %.1f h simulated (%.1f h printing), %llu prints (%llu of others), %llu starts, %llu runs\n",
-                    static_cast<unsigned long long>(seeds_), simulated_s / 3600, printing_s / 3600,
-                    static_cast<unsigned long long>(counts_.prints), static_cast<unsigned long long>(counts_.other_prints),
-                    static_cast<unsigned long long>(counts_.starts), static_cast<unsigned long long>(counts_.runs));
-        std::printf("%llu records named in doubt, %llu underruns with a reason\nfaults:", static_cast<unsigned long long>(counts_.in_doubt),
+        std::printf(
+            "%llu seeds, %.1f h simulated (%.1f h printing), %llu prints (%llu of others), %llu starts, %llu runs\n",
+            static_cast<unsigned long long>(seeds_), simulated_s / 3600, printing_s / 3600,
+            static_cast<unsigned long long>(counts_.prints), static_cast<unsigned long long>(counts_.other_prints),
+            static_cast<unsigned long long>(counts_.starts), static_cast<unsigned long long>(counts_.runs));
+        std::printf("%llu records named in doubt, %llu underruns with a reason\nfaults:",
+                    static_cast<unsigned long long>(counts_.in_doubt),
                     static_cast<unsigned long long>(counts_.underruns));
         for (std::size_t i = 0; i < fault_kinds; ++i) {
             if (counts_.faults[i] > 0) {
@@ -118,8 +124,9 @@ private:
                             static_cast<unsigned long long>(counts_.faults[i]));
             }
         }
-        std::printf("\n%.1f s on the clock: %.0f x real time, %.2f million prints/s\nviolations: %llu\n", wall_s, simulated_s / wall_s,
-                    static_cast<double>(counts_.prints) / wall_s / 1e6, static_cast<unsigned long long>(violations_));
+        std::printf("\n%.1f s on the clock: %.0f x real time, %.2f million prints/s\nviolations: %llu\n", wall_s,
+                    simulated_s / wall_s, static_cast<double>(counts_.prints) / wall_s / 1e6,
+                    static_cast<unsigned long long>(violations_));
     }
 
     const Options& options_;

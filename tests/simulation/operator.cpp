@@ -18,7 +18,8 @@ Operator::Operator(Context& context, Judge& judge, Line& line, Host& host, Rando
     , random_(random) {}
 
 void Operator::look_again() {
-    context_.after(random_.between(Duration{std::chrono::milliseconds{500}}, Duration{std::chrono::seconds{5}}), EventKind::operator_acts);
+    context_.after(random_.between(Duration{std::chrono::milliseconds{500}}, Duration{std::chrono::seconds{5}}),
+                   EventKind::operator_acts);
 }
 
 void Operator::act() {
@@ -54,8 +55,10 @@ bool Operator::puts_printer_in_order() {
         return true;
     }
     switch (status.machine) {
-    case MachineState::standby: return press(Action::power_on);
-    case MachineState::initialising: return true;
+    case MachineState::standby:
+        return press(Action::power_on);
+    case MachineState::initialising:
+        return true;
     case MachineState::ready:
         if (status.nozzle == protocol::NozzleState::opens || status.nozzle == protocol::NozzleState::closes) {
             return true;
@@ -67,14 +70,16 @@ bool Operator::puts_printer_in_order() {
     case MachineState::printing: {
         // linefeed takes over what it finds; another job, or a question about the last product, is seen to first.
         const bool must_stop = host_.ending().code == feeder::OutcomeCode::busy ||
-                               host_.ending().code == feeder::OutcomeCode::did_not_stop || !host_.ending().in_doubt.empty();
+                               host_.ending().code == feeder::OutcomeCode::did_not_stop ||
+                               !host_.ending().in_doubt.empty();
         if (must_stop) {
             return press(Action::stop_print);
         }
         break;
     }
     case MachineState::service:
-    case MachineState::ready_to_print: break;
+    case MachineState::ready_to_print:
+        break;
     }
     const bool needs_word = !status.error.none() && status.error.display() == protocol::ErrorDisplay::error;
     return needs_word && random_.chance(0.7) ? press(Action::acknowledge_errors) : false;

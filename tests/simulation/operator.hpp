@@ -1,5 +1,5 @@
-// The person at the line: puts the printer in order after an interruption, enters the same command again, and, asked about records in
-// doubt, looks at the last product and says what stands on it.
+// The person at the line: puts the printer in order after an interruption, enters the same command again, and, asked
+// about records in doubt, looks at the last product and says what stands on it.
 #pragma once
 
 #include "context.hpp"

@@ -15,6 +15,9 @@ RamDisk& RamDisk::instance() {
 }
 
 RamDisk::RamDisk() {
+    // One thread only: no locks, and nobody asks how much memory is in use.
+    sqlite3_config(SQLITE_CONFIG_SINGLETHREAD);
+    sqlite3_config(SQLITE_CONFIG_MEMSTATUS, 0);
     register_ram_vfs();
 }
 

@@ -1,5 +1,5 @@
-// The host's disk in memory, as an SQLite VFS: fast, and it can die. A killed process stops writing in the middle of an operation; a power
-// failure drops, keeps or tears each write that was not synced; a full disk refuses writes.
+// The host's disk in memory, as an SQLite VFS: fast, and it can die. A killed process stops writing in the middle of an
+// operation; a power failure drops, keeps or tears each write that was not synced; a full disk refuses writes.
 #pragma once
 
 #include "random.hpp"

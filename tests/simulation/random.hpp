@@ -1,5 +1,5 @@
-// Chance from one 64-bit seed. Own draws, since the distributions of <random> differ between libraries: a seed must give the same run
-// everywhere.
+// Chance from one 64-bit seed. Own draws, since the distributions of <random> differ between libraries: a seed must
+// give the same run everywhere.
 #pragma once
 
 #include "base/time.hpp"
@@ -8,7 +8,8 @@
 
 namespace linefeed::simulation {
 
-/// SplitMix64. Every component has its own, forked from the seed of the run, so that one more draw here changes nothing there.
+/// SplitMix64. Every component has its own, forked from the seed of the run, so that one more draw here changes nothing
+/// there.
 class Random {
 public:
     explicit Random(std::uint64_t seed)
@@ -22,7 +23,9 @@ public:
         return z ^ (z >> 31U);
     }
     /// A generator of its own for the component `name`.
-    [[nodiscard]] Random fork(std::uint64_t name) const { return Random{Random{state_ ^ (name * 0xD1342543DE82EF95U)}.next()}; }
+    [[nodiscard]] Random fork(std::uint64_t name) const {
+        return Random{Random{state_ ^ (name * 0xD1342543DE82EF95U)}.next()};
+    }
 
     /// 0 … n − 1. Precondition: n > 0.
     [[nodiscard]] std::uint64_t below(std::uint64_t n) { return next() % n; }

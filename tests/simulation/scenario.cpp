@@ -10,10 +10,10 @@ using namespace std::chrono_literals;
 
 std::string_view to_string(Fault fault) {
     constexpr std::array<std::string_view, fault_kinds> names{
-        "operator stop",  "stop and go",  "panel start",     "stop by linefeed", "printer error",
-        "cover opened",   "nozzle closed", "printer restart", "another job",      "another printer", "second client",
-        "process kill",   "kill in step", "host power loss", "both power loss",  "link cut",        "link silent",
-        "link stall",     "host pause",   "slow disk",       "disk full",        "belt pause"};
+        "operator stop", "stop and go",     "panel start",     "stop by linefeed", "printer error", "cover opened",
+        "nozzle closed", "printer restart", "another job",     "another printer",  "second client", "process kill",
+        "kill in step",  "host power loss", "both power loss", "link cut",         "link silent",   "link stall",
+        "host pause",    "slow disk",       "disk full",       "belt pause"};
     return names[static_cast<std::size_t>(fault)];
 }
 
@@ -23,7 +23,8 @@ bool Scenario::supply_is_sufficient() const {
     const double depth = printer.depth;
     // Split bytes and slow writes take up to four latencies each; the feeder polls every depth / 8000 s, 1 ms at least.
     const double parts = (split > 0 ? 4.0 : 1.0) + (slow_write > 0 ? 4.0 : 0.0);
-    const double supply = 2 * seconds(latency.high) * parts + std::max(depth / 8000.0, 0.001) + seconds(printer.margin) + 0.002;
+    const double supply =
+        2 * seconds(latency.high) * parts + std::max(depth / 8000.0, 0.001) + seconds(printer.margin) + 0.002;
     const double ledger = 2 * seconds(commit.high) + seconds(gather) + 0.002;
     return damage == 0 && per_second * supply < depth / 2 - 1 && per_second * ledger < depth;
 }
@@ -55,11 +56,15 @@ void draw_faults(Scenario& scenario, Random random) {
     for (std::uint32_t& weight : scenario.weights) {
         weight = random.chance(0.35) ? static_cast<std::uint32_t>(random.spread(1, 32)) : 0;
     }
+    if (scenario.printer.habits.line_end == simulator::LineEnd::lf_cr) {
+        scenario.weights[static_cast<std::size_t>(Fault::second_client)] = 0; // may switch the length prefix on
+    }
     if (std::all_of(scenario.weights.begin(), scenario.weights.end(), [](std::uint32_t w) { return w == 0; })) {
-        scenario.weights[random.below(fault_kinds)] = 1;
+        scenario.weights[random.below(static_cast<std::uint64_t>(Fault::printer_restart))] = 1;
     }
     // Around the time that some records take, so that faults meet a printing line as well as one another.
-    const Duration typical = std::clamp<Duration>(scenario.period * static_cast<std::int64_t>(scenario.printer.depth), 20ms, 120s);
+    const Duration typical =
+        std::clamp<Duration>(scenario.period * static_cast<std::int64_t>(scenario.printer.depth), 20ms, 120s);
     scenario.fault_gap = {1ms, typical * static_cast<std::int64_t>(random.spread(1, 8))};
 }
 
@@ -70,7 +75,8 @@ void draw_printer(Scenario& scenario, Random random) {
     const Duration shortest = (scenario.period - scenario.period_jitter) / (scenario.bursts ? 2 : 1);
     printer.print_duration = std::min<Duration>(random.spread(Duration{200us}, Duration{200ms}), shortest * 6 / 10);
     printer.nozzle_opening_time = 30s;
-    printer.total_prints = static_cast<std::uint32_t>(random.chance(0.05) ? 0xFFFFFF00U + random.below(256) : random.below(1000000));
+    printer.total_prints =
+        static_cast<std::uint32_t>(random.chance(0.05) ? 0xFFFFFF00U + random.below(256) : random.below(1000000));
     printer.length_on = random.chance(0.1);
     printer.echo_on = random.chance(0.1);
     printer.block_length = random.chance(0.05) ? static_cast<std::uint32_t>(random.between(1, 256)) : 0;
@@ -83,7 +89,8 @@ void draw_printer(Scenario& scenario, Random random) {
     habits.error_bit_24 = random.chance(0.15);
     habits.abort_print_on_stop = random.chance(0.25);
     habits.standby_silent = random.chance(0.2);
-    habits.line_end = static_cast<simulator::LineEnd>(random.below(3));
+    // LF before the CR is the habit of old firmware, which knows no length prefix.
+    habits.line_end = static_cast<simulator::LineEnd>(printer.length_on ? random.below(2) : random.below(3));
 }
 
 } // namespace
@@ -124,6 +131,13 @@ Scenario draw_scenario(std::uint64_t seed, Profile profile) {
     while (!scenario.supply_is_sufficient() && !may_starve && scenario.period < 1s) {
         scenario.period *= 2;
     }
+    // The feeder asks up to 1 000 times a second when the FIFO is small, however slow the line: such worlds are kept
+    // short.
+    const Duration longest = scenario.printer.depth >= 256  ? Duration{3000s}
+                             : scenario.printer.depth >= 16 ? Duration{100s}
+                                                            : Duration{20s};
+    const std::int64_t most = std::max<std::int64_t>(longest / scenario.period, 8);
+    scenario.records = static_cast<std::uint32_t>(std::min<std::int64_t>(scenario.records, most));
     if (!scenario.supply_is_sufficient()) {
         scenario.records = std::min(scenario.records, 60U);
     }

@@ -1,5 +1,5 @@
-// What one seed means: the job, the printer, the line, the network, the disk, and which faults come how often. Swarm testing: each seed
-// switches most faults off and draws the weights of the rest, so that rare combinations come up.
+// What one seed means: the job, the printer, the line, the network, the disk, and which faults come how often. Swarm
+// testing: each seed switches most faults off and draws the weights of the rest, so that rare combinations come up.
 #pragma once
 
 #include "base/time.hpp"
@@ -21,18 +21,18 @@ enum class Fault : std::uint8_t {
     printer_error,
     cover_opened,
     nozzle_closed,
-    printer_restart,  ///< power off and on: FIFO, `=CM`, number lost, counter kept
-    another_job,      ///< another host prints a job on it while linefeed is away
-    another_printer,  ///< a different one stands at the address
-    second_client,    ///< asks and switches modes at the same time
+    printer_restart, ///< power off and on: FIFO, `=CM`, number lost, counter kept
+    another_job,     ///< another host prints a job on it while linefeed is away
+    another_printer, ///< a different one stands at the address
+    second_client,   ///< asks and switches modes at the same time
     process_kill,
-    kill_in_step,     ///< between two effects of one step
+    kill_in_step, ///< between two effects of one step
     host_power_loss,
     both_power_loss,
-    link_cut,         ///< announced: reset
-    link_silent,      ///< no byte comes through any more
-    link_stall,       ///< bytes come late, but come
-    host_pause,       ///< the process gets no time
+    link_cut,    ///< announced: reset
+    link_silent, ///< no byte comes through any more
+    link_stall,  ///< bytes come late, but come
+    host_pause,  ///< the process gets no time
     slow_disk,
     disk_full,
     belt_pause,
@@ -72,7 +72,7 @@ struct Scenario {
     Span fault_gap{std::chrono::milliseconds{1}, std::chrono::seconds{10}};
     // The operator
     bool open_nozzle = false;
-    std::uint32_t skips_percent = 0;    ///< of his decisions about records in doubt
+    std::uint32_t skips_percent = 0; ///< of his decisions about records in doubt
     std::uint32_t reprints_percent = 0;
 
     /// Network, disk and the beat of the feeder leave no excuse for an underrun.

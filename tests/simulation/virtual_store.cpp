@@ -10,8 +10,7 @@ constexpr Duration checkpoint_interval = 5s;
 /// Whether the request needs the disk.
 bool is_durable(const daemon::StoreRequest& request) {
     return std::holds_alternative<feeder::Settle>(request) || std::holds_alternative<feeder::BeginRun>(request) ||
-           std::holds_alternative<feeder::AdoptRun>(request) ||
-           std::holds_alternative<feeder::End>(request);
+           std::holds_alternative<feeder::AdoptRun>(request) || std::holds_alternative<feeder::End>(request);
 }
 
 } // namespace
@@ -72,7 +71,9 @@ void VirtualStore::begin(Operation operation) {
     constexpr Duration read_time = 20us;
     busy_ = true;
     operation_ = operation;
-    Duration takes = operation == Operation::read ? read_time : random_.between(context_.scenario.commit.low, context_.scenario.commit.high);
+    Duration takes = operation == Operation::read
+                         ? read_time
+                         : random_.between(context_.scenario.commit.low, context_.scenario.commit.high);
     if (slow_until_ > context_.now) {
         takes += slow_until_ - context_.now;
     }
@@ -91,9 +92,15 @@ void VirtualStore::execute() {
         work_.take(request);
         return;
     }
-    case Operation::commit: work_.commit(); return;
-    case Operation::read: work_.read_ahead(); return;
-    case Operation::checkpoint: work_.checkpoint(); return;
+    case Operation::commit:
+        work_.commit();
+        return;
+    case Operation::read:
+        work_.read_ahead();
+        return;
+    case Operation::checkpoint:
+        work_.checkpoint();
+        return;
     }
 }
 

@@ -1,5 +1,5 @@
-// The store thread in virtual time: the product's StoreWork, each of whose operations takes as long as the disk does, and may be cut off in
-// its middle.
+// The store thread in virtual time: the product's StoreWork, each of whose operations takes as long as the disk does,
+// and may be cut off in its middle.
 #pragma once
 
 #include "context.hpp"

@@ -23,8 +23,8 @@ std::uint64_t Wire::open() {
 }
 
 Wire::Connection* Wire::find(std::uint64_t id) {
-    const auto found =
-        std::find_if(connections_.rbegin(), connections_.rend(), [id](const Connection& connection) { return connection.id == id; });
+    const auto found = std::find_if(connections_.rbegin(), connections_.rend(),
+                                    [id](const Connection& connection) { return connection.id == id; });
     return found == connections_.rend() ? nullptr : &*found;
 }
 
@@ -94,7 +94,8 @@ void Wire::printer_closes(bool announced) {
         if (connection.printer_open) {
             connection.printer_open = false;
             if (announced && connection.host_open) {
-                context_.queue.put(std::max(connection.last_to_host, context_.now + latency()), EventKind::link_closed, connection.id);
+                context_.queue.put(std::max(connection.last_to_host, context_.now + latency()), EventKind::link_closed,
+                                   connection.id);
             }
         }
     }

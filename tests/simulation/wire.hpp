@@ -1,5 +1,6 @@
-// The network between host and printer: latency, jitter, split and merged pieces, stalls, cuts announced and silent. Bytes of one direction
-// of one connection never overtake each other; what a dead process left in its socket still arrives.
+// The network between host and printer: latency, jitter, split and merged pieces, stalls, cuts announced and silent.
+// Bytes of one direction of one connection never overtake each other; what a dead process left in its socket still
+// arrives.
 #pragma once
 
 #include "context.hpp"
@@ -41,7 +42,9 @@ public:
     void stall(Instant until);
     void set_down(bool down) { down_ = down; }
     [[nodiscard]] bool down() const { return down_; }
-    [[nodiscard]] Duration latency() { return random_.between(context_.scenario.latency.low, context_.scenario.latency.high); }
+    [[nodiscard]] Duration latency() {
+        return random_.between(context_.scenario.latency.low, context_.scenario.latency.high);
+    }
 
 private:
     struct Connection {

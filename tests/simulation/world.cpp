@@ -67,22 +67,47 @@ private:
 
     void dispatch(const Event& event) {
         switch (event.kind) {
-        case EventKind::chunk: wire_.deliver(event.a, *this); return;
-        case EventKind::link_closed: host_.link_closed(event.a); return;
-        case EventKind::peer_closed: line_.disconnected(event.a); return;
-        case EventKind::connected: host_.connected(event.a, event.b); return;
-        case EventKind::write_step: host_.write_step(event.a); return;
-        case EventKind::store_done: host_.store_done(event.a); return;
-        case EventKind::store_wake: host_.store_wake(event.a); return;
-        case EventKind::host_resumes: host_.resume(event.a); return;
-        case EventKind::next_fault: faults_.cause_next(); return;
-        case EventKind::fault_ends: faults_.repair(static_cast<Fault>(event.a), event.b); return;
-        case EventKind::operator_acts: operator_.act(); return;
-        case EventKind::belt_changes: line_.change_belt(); return;
+        case EventKind::chunk:
+            wire_.deliver(event.a, *this);
+            return;
+        case EventKind::link_closed:
+            host_.link_closed(event.a);
+            return;
+        case EventKind::peer_closed:
+            line_.disconnected(event.a);
+            return;
+        case EventKind::connected:
+            host_.connected(event.a, event.b);
+            return;
+        case EventKind::write_step:
+            host_.write_step(event.a);
+            return;
+        case EventKind::store_done:
+            host_.store_done(event.a);
+            return;
+        case EventKind::store_wake:
+            host_.store_wake(event.a);
+            return;
+        case EventKind::host_resumes:
+            host_.resume(event.a);
+            return;
+        case EventKind::next_fault:
+            faults_.cause_next();
+            return;
+        case EventKind::fault_ends:
+            faults_.repair(static_cast<Fault>(event.a), event.b);
+            return;
+        case EventKind::operator_acts:
+            operator_.act();
+            return;
+        case EventKind::belt_changes:
+            line_.change_belt();
+            return;
         }
     }
 
-    /// Once all is repaired, the job must finish in the time that its records take, with patience for every start and stop.
+    /// Once all is repaired, the job must finish in the time that its records take, with patience for every start and
+    /// stop.
     void check_progress() {
         if (!faults_.healed()) {
             return;
@@ -104,7 +129,9 @@ private:
         return !feeds || !context_.scenario.supply_is_sufficient() || faults_.excuses_underrun();
     }
 
-    void printer_receives(std::uint64_t connection, std::string_view bytes) override { line_.receive(connection, bytes); }
+    void printer_receives(std::uint64_t connection, std::string_view bytes) override {
+        line_.receive(connection, bytes);
+    }
     void host_receives(std::uint64_t connection, std::string_view bytes) override { host_.receive(connection, bytes); }
 
     Context context_;

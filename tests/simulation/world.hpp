@@ -1,4 +1,5 @@
-// One simulated world: runs one seed to its end. First safety under faults; then the faults end, and the job must finish.
+// One simulated world: runs one seed to its end. First safety under faults; then the faults end, and the job must
+// finish.
 #pragma once
 
 #include "context.hpp"

@@ -28,9 +28,9 @@ RecordPage page_of(const std::vector<std::string>& fields) {
 
 TEST(RecordFields, shouldShowFieldsAsUtf8) {
     const RecordPage page = page_of({"M\xFCller\tBerlin", "\\^ \\\\"});
-    EXPECT_EQ(record_fields(page, RecordNumber{1}, EscapeMode::backslash),
+    EXPECT_EQ(record_fields(page, RecordNumber{1}, RecordFormat{}),
               (std::vector<std::string>{"Müller", "Berlin"}));
-    EXPECT_EQ(record_fields(page, RecordNumber{2}, EscapeMode::backslash), std::vector<std::string>{"^ \\"});
+    EXPECT_EQ(record_fields(page, RecordNumber{2}, RecordFormat{}), std::vector<std::string>{"^ \\"});
 }
 
 class PrintReportTest : public testing::Test {
@@ -63,7 +63,7 @@ protected:
     }
     PrintReport report(feeder::OutcomeCode code, RecordRange wanted = closed(1, 5), const std::string& detail = {}) {
         return make_report(*spool_, job_, wanted, {code, protocol::MachineState::standby, {}, true}, detail,
-                           EscapeMode::backslash)
+                           RecordFormat{})
             .value();
     }
     static std::pair<std::string, std::string> shown(const PrintReport& report, bool json) {

@@ -1,6 +1,7 @@
 // A feeder, a printer and a ledger, with everything between them that may go wrong, from one seed.
 #pragma once
 
+#include "ledger_double.hpp"
 #include "printer_double.hpp"
 #include "story.hpp"
 
@@ -22,20 +23,17 @@ struct Faults {
     bool broken_counter = false; ///< `?CC` is not answered
 };
 
-/// What the ledger knows of a record.
-enum class Fate { fresh, open, printed, unused, in_doubt, skipped };
-
 class Line {
 public:
     Line(std::uint32_t seed, const Faults& faults, PrinterDouble::StopPointHabit habit)
         : random_(seed)
         , faults_(faults)
         , printer_(habit)
-        , fates_(records + 1, Fate::fresh)
+        , ledger_(records)
         , take_over_(seed % 2 == 0) {}
 
     void run() {
-        for (int runs = 0; runs < 200 && !done(); ++runs) {
+        for (int runs = 0; runs < 200 && !ledger_.done(); ++runs) {
             faults_end_ = runs > 20;
             if (faults_end_) {
                 printer_.repair();
@@ -47,7 +45,7 @@ public:
             between_runs();
             decide_doubts();
         }
-        ASSERT_TRUE(done()) << "the job does not come to its end";
+        ASSERT_TRUE(ledger_.done()) << "the job does not come to its end";
         judge_tape();
     }
     [[nodiscard]] std::uint64_t doubts() const { return doubts_; }
@@ -75,29 +73,12 @@ private:
     std::uint32_t draw(std::uint32_t below) { return static_cast<std::uint32_t>(random_() % below); }
     bool fault(bool possible, std::uint32_t one_in) { return possible && !faults_end_ && chance(one_in); }
 
-    bool done() const {
-        return std::all_of(fates_.begin() + 1, fates_.end(),
-                           [](Fate fate) { return fate == Fate::printed || fate == Fate::skipped; });
-    }
-
-    std::optional<OpenRun> open_run() const {
-        const auto first = std::find(fates_.begin(), fates_.end(), Fate::open);
-        if (first == fates_.end()) {
-            return std::nullopt;
-        }
-        OpenRun run = started_;
-        const auto behind = std::find_if(first, fates_.end(), [](Fate fate) { return fate != Fate::open; });
-        run.printed_through = RecordNumber{static_cast<std::uint32_t>(first - fates_.begin()) - 1};
-        run.issued_through = RecordNumber{static_cast<std::uint32_t>(behind - fates_.begin()) - 1};
-        return run;
-    }
-
     void one_run() {
         FeederSettings settings;
         settings.stop_timeout = std::chrono::milliseconds{200};
         settings.finish_timeout = std::chrono::milliseconds{100};
         feeder_ = std::make_unique<Feeder>(
-            settings, FeederPlan{.open = open_run(), .doubt_blocks = true, .take_over = take_over_});
+            settings, FeederPlan{.open = ledger_.open_run(), .doubt_blocks = true, .take_over = take_over_});
         ended_ = false;
         to_printer_.clear();
         to_host_.clear();
@@ -222,9 +203,9 @@ private:
     /// The operator looks at the products, and knows.
     void decide_doubts() {
         for (std::uint32_t number = 1; number <= records; ++number) {
-            if (fates_[number] == Fate::in_doubt) {
+            if (ledger_.fate(number) == Fate::in_doubt) {
                 ++doubts_;
-                fates_[number] = on_tape(number) > 0 ? Fate::skipped : Fate::unused;
+                ledger_.fate(number) = on_tape(number) > 0 ? Fate::skipped : Fate::unused;
             }
         }
     }
@@ -255,7 +236,7 @@ private:
     void carry_out(const Action& action) {
         if (const auto* send = std::get_if<SendRecords>(&action)) {
             for (std::uint32_t number = send->range.first().value(); number <= send->range.last().value(); ++number) {
-                ASSERT_EQ(fates_[number], Fate::open) << "sent without a durable intent: " << number;
+                ASSERT_EQ(ledger_.fate(number), Fate::open) << "sent without a durable intent: " << number;
                 to_printer_.emplace_back(SendRecords{RecordRange{RecordNumber{number}, RecordCount{1}}});
             }
         } else if (std::holds_alternative<End>(action)) {
@@ -353,14 +334,18 @@ private:
         if (const auto* begin = std::get_if<BeginRun>(&action)) {
             grant(*begin);
         } else if (const auto* adopted = std::get_if<AdoptRun>(&action)) {
-            adopt(*adopted);
+            ledger_.confirm(adopted->printed_through.value());
+            begin_printing(); // the earlier run goes on
         } else if (const auto* intent = std::get_if<AskIntent>(&action)) {
-            issue(intent->through.value());
-            tell([this](Actions& out) { feeder_->on_durable(issued_, now_, out); });
+            ledger_.issue(intent->through.value());
+            tell([this](Actions& out) { feeder_->on_durable(ledger_.issued(), now_, out); });
         } else if (const auto* printed = std::get_if<ConfirmPrinted>(&action)) {
-            confirm(printed->through.value());
+            ledger_.confirm(printed->through.value());
         } else if (const auto* settle = std::get_if<Settle>(&action)) {
-            take_verdict(*settle);
+            ledger_.settle(settle->verdict);
+            if (!settle->earlier_run) {
+                tell([this](Actions& out) { feeder_->on_settled(out); });
+            }
         }
     }
 
@@ -372,69 +357,27 @@ private:
     }
 
     void grant(const BeginRun& begin) {
-        const auto printable = [](Fate fate) { return fate == Fate::fresh || fate == Fate::unused; };
-        const auto first = std::find_if(fates_.begin() + 1, fates_.end(), printable);
-        const auto behind = std::find_if_not(first, fates_.end(), printable);
-        if (first == fates_.end()) { // the truth about the earlier run left nothing to print
+        if (ledger_.grant(begin)) {
+            begin_printing();
+        } else { // the truth about the earlier run left nothing to print
             tell([this](Actions& out) { feeder_->on_refused(OutcomeCode::nothing_to_print, out); });
-            return;
-        }
-        granted_ = RecordRange::closed(RecordNumber{static_cast<std::uint32_t>(first - fates_.begin())},
-                                       RecordNumber{static_cast<std::uint32_t>(behind - fates_.begin()) - 1});
-        started_ = {granted_.first(), {}, {}, "S1", begin.printer.total_prints, begin.last_printed_before};
-        issued_ = granted_.first().previous();
-        issue(std::min(granted_.last().value(), granted_.first().value() + 11));
-        tell([this](Actions& out) { feeder_->on_granted(granted_, issued_, now_, out); });
-        tell([this](Actions& out) { feeder_->on_supplied(granted_.last(), now_, out); });
-    }
-
-    /// The earlier run goes on: `granted_` and `issued_` still stand.
-    void adopt(const AdoptRun& adopted) {
-        confirm(adopted.printed_through.value());
-        tell([this](Actions& out) { feeder_->on_granted(granted_, issued_, now_, out); });
-        tell([this](Actions& out) { feeder_->on_supplied(granted_.last(), now_, out); });
-    }
-
-    void confirm(std::uint32_t through) {
-        for (std::uint32_t number = granted_.first().value(); number <= through; ++number) {
-            fates_[number] = Fate::printed;
         }
     }
 
-    void issue(std::uint32_t through) {
-        for (std::uint32_t number = issued_.value() + 1; number <= through; ++number) {
-            fates_[number] = Fate::open;
-        }
-        issued_ = RecordNumber{std::max(issued_.value(), through)};
-    }
-
-    void take_verdict(const Settle& settle) {
-        const auto set = [this](const RecordRange& range, Fate fate) {
-            for (std::uint64_t i = 0; i < range.count().value(); ++i) {
-                ASSERT_EQ(fates_[range.first().value() + i], Fate::open);
-                fates_[range.first().value() + i] = fate;
-            }
-        };
-        set(settle.verdict.printed, Fate::printed);
-        set(settle.verdict.in_doubt, Fate::in_doubt);
-        std::replace(fates_.begin(), fates_.end(), Fate::open, Fate::unused); // issued, but never sent
-        if (!settle.earlier_run) {
-            tell([this](Actions& out) { feeder_->on_settled(out); });
-        }
+    void begin_printing() {
+        tell([this](Actions& out) { feeder_->on_granted(ledger_.granted(), ledger_.issued(), now_, out); });
+        tell([this](Actions& out) { feeder_->on_supplied(ledger_.granted().last(), now_, out); });
     }
 
     std::mt19937 random_;
     Faults faults_;
     PrinterDouble printer_;
-    std::vector<Fate> fates_;
+    LedgerDouble ledger_;
     std::unique_ptr<Feeder> feeder_;
     Instant now_{std::chrono::seconds{1}};
     std::deque<Action> to_printer_;
     std::deque<std::function<void(Actions&)>> to_host_;
     std::deque<Action> to_ledger_;
-    RecordRange granted_;
-    RecordNumber issued_;
-    OpenRun started_;
     bool take_over_ = false;
     bool ended_ = false;
     bool faults_end_ = false;

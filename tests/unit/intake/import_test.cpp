@@ -237,7 +237,11 @@ TEST_F(ImportTest, shouldTakeAFileThatWasRemovedAfterItWasRead) {
 }
 
 TEST(ImportReportJson, shouldBeValidWhateverTheRowsHold) {
-    const ImportReport report{7, 5, 2, {{3, "na\"me", "bad \xFF byte"}, {4, "", "the line is empty"}}};
+    ImportReport report;
+    report.rows = 7;
+    report.records = 5;
+    report.bad_rows = 2;
+    report.reported = {{3, "na\"me", "bad \xFF byte"}, {4, "", "the line is empty"}};
     const auto json = nlohmann::json::parse(to_json(report));
     EXPECT_EQ(json["rows"], 7);
     EXPECT_EQ(json["records"], 5);

@@ -306,7 +306,7 @@ TEST(Session, shouldKeepALatePageUntilTheFarewellIsOver) {
 TEST(Session, shouldSendABlankEndMarkerWithTheFieldsOfTheRecords) {
     const auto pages = make_pages(1, 10, 10, plain_text);
     SessionSettings settings;
-    settings.record_fields = 3;
+    settings.charsets.assign(3, protocol::Charset::latin1);
     Conversation host{settings};
     host.connect();
     host.receive(not_printing + "^0=VS1\r^0=JLA\r" + mail(0, 0, 0) + mail(0, 0, 0) + "^0=CC0\t0\t0\r");

@@ -20,6 +20,10 @@ protected:
         disk_faults() = {};
         SpoolTest::TearDown();
     }
+    /// In memory where possible: the faults are ours, and hundreds of real syncs would only take time.
+    [[nodiscard]] std::filesystem::path base_directory() const override {
+        return std::filesystem::is_directory("/dev/shm") ? "/dev/shm" : SpoolTest::base_directory();
+    }
     Result<Spool> try_open_faulty() {
         return Spool::open(path, {[this] { return now_ns; }, faulty_vfs::name});
     }

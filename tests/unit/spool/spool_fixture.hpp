@@ -31,13 +31,16 @@ inline RecordPage page_of(std::uint32_t first, std::uint32_t count) {
 class SpoolTest : public testing::Test {
 protected:
     void SetUp() override {
-        std::string name = std::filesystem::temp_directory_path() / "linefeed-spool-XXXXXX";
+        std::string name = base_directory() / "linefeed-spool-XXXXXX";
         ASSERT_NE(::mkdtemp(name.data()), nullptr);
         directory = name;
         path = directory / "spool.db";
     }
     void TearDown() override { std::filesystem::remove_all(directory); }
 
+    [[nodiscard]] virtual std::filesystem::path base_directory() const {
+        return std::filesystem::temp_directory_path();
+    }
     Result<Spool> try_open() {
         return Spool::open(path, {[this] { return now_ns; }, {}});
     }
