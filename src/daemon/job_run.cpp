@@ -10,7 +10,7 @@ namespace asio = boost::asio;
 using session::Effects;
 using session::Session;
 
-JobRun::JobRun(spool::Spool& spool, const spool::Job& job, RecordRange wanted, std::optional<OpenIssue> open,
+JobRun::JobRun(spool::Spool& spool, const spool::Job& job, RecordRange wanted, const std::optional<OpenIssue>& open,
                const JobRunSettings& settings)
     : settings_(settings)
     , store_(StoreWork{spool, job.id, LedgerKeeper{spool, job.id, wanted, link::to_string(settings.printer), open}})

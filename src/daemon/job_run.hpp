@@ -40,7 +40,7 @@ struct RunProgress {
 /// join() and result(). The spool belongs to the run from start() to join().
 class JobRun final : private link::EffectHandler {
 public:
-    JobRun(spool::Spool& spool, const spool::Job& job, RecordRange wanted, std::optional<OpenIssue> open,
+    JobRun(spool::Spool& spool, const spool::Job& job, RecordRange wanted, const std::optional<OpenIssue>& open,
            const JobRunSettings& settings);
     ~JobRun() override;
     JobRun(const JobRun&) = delete;

@@ -36,7 +36,7 @@ std::optional<std::uint32_t> prints_since(const OpenRun& run, const Evidence& ev
 }
 
 /// The verdict of the counter alone: right as long as the printer has printed nothing but this run. A printer that lost
-/// its memory cannot say whether it finished the last print that it counted: that one stays in doubt.
+/// its memory cannot say which print it lost it in.
 std::optional<Verdict> by_counter(const OpenRun& run, const Evidence& evidence) {
     const auto prints = prints_since(run, evidence);
     if (!prints || *prints > (run.issued_through - run.first).value() + 1) {
@@ -137,14 +137,16 @@ Verdict by_number(const OpenRun& run, const Evidence& evidence) {
     assertion_failed("CounterSays", __FILE__, __LINE__);
 }
 
-/// The blank end marker behind the last record was printed, so all records were; the counter has seen it too.
+/// The blank end marker behind the last record was printed, so all records were; a counter that moves has seen it too.
 bool shows_end_marker(const OpenRun& run, const Evidence& evidence) {
     if (!run.last || run.issued_through != *run.last || *run.last == RecordNumber::max() ||
         evidence.mail.last_printed != run.last->next()) {
         return false;
     }
     const auto prints = prints_since(run, evidence);
-    return !prints || *prints <= (*run.last - run.first).value() + 2;
+    const std::uint64_t with_marker = (*run.last - run.first).value() + 2;
+    return !prints || *prints == 0 || *prints == with_marker ||
+           (*prints + std::uint64_t{1} == with_marker && !evidence.mail.last_print_finished);
 }
 
 } // namespace

@@ -61,8 +61,8 @@ public:
     /// Opens or creates the database, applies the migrations of schema/, checks its small tables (PRAGMA quick_check),
     /// removes imports that were not finished.
     [[nodiscard]] static Result<Spool> open(const std::filesystem::path& path, SpoolOptions options);
-    /// Opens a spool for reading, also while another process writes it. Everything that writes fails. FailureKind::usage if there
-    /// is none at `path`.
+    /// Opens a spool for reading, also while another process writes it. Everything that writes fails.
+    /// FailureKind::usage if there is none at `path`.
     [[nodiscard]] static Result<Spool> open_for_reading(const std::filesystem::path& path, SpoolOptions options);
     Spool(Spool&&) noexcept;
     Spool& operator=(Spool&&) noexcept;

@@ -1,5 +1,5 @@
-// Runs a fuzz target over the files of its corpus and over random mutations of them, without a fuzzing engine: so that every
-// compiler and sanitizer preset sees them.
+// Runs a fuzz target over the files of its corpus and over random mutations of them, without a fuzzing engine: so that
+// every compiler and sanitizer preset sees them.
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -28,8 +28,13 @@ int main(int argc, char** argv) {
             for (std::uint64_t changes = 1 + random() % 4; changes > 0; --changes) {
                 const std::size_t at = random() % mutated.size();
                 switch (random() % 3) {
-                case 0: mutated[at] = static_cast<std::uint8_t>(random()); break;
-                case 1: mutated.insert(mutated.begin() + static_cast<std::ptrdiff_t>(at), mutated[random() % mutated.size()]); break;
+                case 0:
+                    mutated[at] = static_cast<std::uint8_t>(random());
+                    break;
+                case 1:
+                    mutated.insert(mutated.begin() + static_cast<std::ptrdiff_t>(at),
+                                   mutated[random() % mutated.size()]);
+                    break;
                 default:
                     if (mutated.size() > 1) {
                         mutated.erase(mutated.begin() + static_cast<std::ptrdiff_t>(at));

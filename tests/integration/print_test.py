@@ -197,7 +197,8 @@ class Records(harness.TestCase):
     def test_an_empty_field(self):
         file = self.write_csv([["a", "", "c"], ["", "b", ""]], header=("x", "y", "z"))
         printer = self.simulator("--rate", 500)
-        self.assert_done(self.print(file, printer))
+        result = self.print(file, printer)
+        self.assert_one_clear_line(0, result, "2 records", "placeholder")
         self.assert_printed([(1, "a\t\tc"), (2, "\tb\t")], printer)
 
     def test_skip_bad_prints_the_rest_without_gaps(self):

@@ -121,8 +121,7 @@ void Host::next_run() {
             word_counts_ = false;
             const auto job = spool_->job(job_);
             LINEFEED_ASSERT(job && *job);
-            if (const auto settled = cli::settle_by_operator(*spool_, **job, word_, protocol::EscapeMode::backslash);
-                !settled) {
+            if (const auto settled = cli::settle_by_operator(*spool_, **job, word_); !settled) {
                 if (settled.error().kind == FailureKind::usage) {
                     judge_.violation("the operator's word was refused: " + settled.error().message);
                 }

@@ -35,7 +35,7 @@ void Host::begin_run(const std::optional<daemon::OpenIssue>& open) {
     const feeder::FeederPlan plan = daemon::make_plan(open, job_, wanted_);
     session::SessionSettings settings;
     settings.feeder.open_nozzle = context_.scenario.open_nozzle;
-    settings.record_fields = context_.scenario.two_fields ? 2 : 1;
+    settings.charsets.resize(context_.scenario.two_fields ? 2 : 1, protocol::Charset::latin1);
     const std::uint64_t generation = ++generation_;
     run_ = std::make_unique<Run>(
         settings, plan,
@@ -292,9 +292,14 @@ void Host::run_over() {
     const feeder::Outcome outcome = run_->outcome;
     context_.trace.note(context_.now, "run ends", static_cast<std::uint64_t>(outcome.code), outcome.issued ? 1 : 0);
     wire_.host_closes(run_->connection);
+    const bool storage_failed = run_->store.failed();
     run_.reset();
     steps_to_live_.reset();
     paused_until_ = {};
+    if (storage_failed) {
+        end_process(feeder::OutcomeCode::storage_failed);
+        return;
+    }
     ending_.code = outcome.code;
     word_counts_ = word_counts_ && !outcome.issued;
     const bool doubt_to_settle = outcome.code == feeder::OutcomeCode::records_in_doubt && !outcome.issued;

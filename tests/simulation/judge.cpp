@@ -85,6 +85,16 @@ void Judge::will_reprint(RecordRange range) {
     }
 }
 
+bool Judge::unbroken(RecordNumber first, RecordNumber last) const {
+    for (std::uint64_t number = first.value(); number <= last.value(); ++number) {
+        const Product& it = products_[number - context_.scenario.first()];
+        if (it.complete == 0 && it.aborted == 0) {
+            return false;
+        }
+    }
+    return true;
+}
+
 void Judge::accepts_part(RecordNumber number) {
     product(number)->may_be_missing = true;
 }

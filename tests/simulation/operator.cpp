@@ -91,19 +91,23 @@ cli::OperatorWord Operator::decides() {
     if (doubt.empty()) {
         return word;
     }
-    const std::uint64_t dice = random_.below(100);
-    if (dice < context_.scenario.skips_percent) {
+    const RecordNumber first = doubt.front().first();
+    // A jump in the numbers on the products: "the last product" would say too much.
+    const bool jump =
+        judge_.last() >= first && judge_.last() <= doubt.back().last() && !judge_.unbroken(first, judge_.last());
+    const std::uint64_t dice = jump ? random_.below(2) : random_.below(100);
+    if (jump ? dice == 0 : dice < context_.scenario.skips_percent) {
         word.policy = cli::InDoubtPolicy::skip;
         std::for_each(doubt.begin(), doubt.end(), [this](const RecordRange& range) { judge_.will_skip(range); });
         return word;
     }
-    if (dice < context_.scenario.skips_percent + context_.scenario.reprints_percent) {
+    if (jump || dice < context_.scenario.skips_percent + context_.scenario.reprints_percent) {
         word.policy = cli::InDoubtPolicy::reprint;
         std::for_each(doubt.begin(), doubt.end(), [this](const RecordRange& range) { judge_.will_reprint(range); });
         return word;
     }
     RecordNumber last = judge_.last();
-    const RecordNumber before_first = doubt.front().first().previous();
+    const RecordNumber before_first = first.previous();
     if (!judge_.last_is_complete() && last > before_first) {
         if (random_.chance(0.5)) {
             judge_.accepts_part(last);

@@ -56,6 +56,12 @@ void draw_faults(Scenario& scenario, Random random) {
     for (std::uint32_t& weight : scenario.weights) {
         weight = random.chance(0.35) ? static_cast<std::uint32_t>(random.spread(1, 32)) : 0;
     }
+    if (scenario.printer.habits.ignore_stop_at || scenario.printer.habits.stop_at_only_while_printing) {
+        // Known limit: without a stop point, a stop and a start at the panel between two status inquiries cannot be
+        // seen.
+        scenario.weights[static_cast<std::size_t>(Fault::stop_and_go)] = 0;
+        scenario.weights[static_cast<std::size_t>(Fault::panel_start)] = 0;
+    }
     if (scenario.printer.habits.line_end == simulator::LineEnd::lf_cr) {
         scenario.weights[static_cast<std::size_t>(Fault::second_client)] = 0; // may switch the length prefix on
     }

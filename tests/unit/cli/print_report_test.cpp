@@ -1,5 +1,6 @@
 // What a person or a program is told at the end of `linefeed print`.
 #include "cli/print_report.hpp"
+#include "cli/record_text.hpp"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -9,7 +10,6 @@
 namespace linefeed::cli {
 namespace {
 
-using protocol::EscapeMode;
 using spool::LedgerEntry;
 using spool::LedgerKind;
 
@@ -28,9 +28,14 @@ RecordPage page_of(const std::vector<std::string>& fields) {
 
 TEST(RecordFields, shouldShowFieldsAsUtf8) {
     const RecordPage page = page_of({"M\xFCller\tBerlin", "\\^ \\\\"});
-    EXPECT_EQ(record_fields(page, RecordNumber{1}, RecordFormat{}),
-              (std::vector<std::string>{"Müller", "Berlin"}));
+    EXPECT_EQ(record_fields(page, RecordNumber{1}, RecordFormat{}), (std::vector<std::string>{"Müller", "Berlin"}));
     EXPECT_EQ(record_fields(page, RecordNumber{2}, RecordFormat{}), std::vector<std::string>{"^ \\"});
+}
+
+TEST(RecordFields, shouldReadEachFieldByItsCharset) {
+    const RecordPage page = page_of({"00480069\t\x80 5"});
+    const RecordFormat format{{protocol::Charset::unicode_hex, protocol::Charset::windows_1252}, {}};
+    EXPECT_EQ(record_fields(page, RecordNumber{1}, format), (std::vector<std::string>{"Hi", "€ 5"}));
 }
 
 class PrintReportTest : public testing::Test {
@@ -62,9 +67,7 @@ protected:
         ASSERT_TRUE(spool_->append(job_.id, entries));
     }
     PrintReport report(feeder::OutcomeCode code, RecordRange wanted = closed(1, 5), const std::string& detail = {}) {
-        return make_report(*spool_, job_, wanted, {code, protocol::MachineState::standby, {}, true}, detail,
-                           RecordFormat{})
-            .value();
+        return make_report(*spool_, job_, wanted, {code, protocol::MachineState::standby, {}, true}, detail).value();
     }
     static std::pair<std::string, std::string> shown(const PrintReport& report, bool json) {
         testing::internal::CaptureStdout();
@@ -153,7 +156,8 @@ TEST_F(PrintReportTest, shouldSayNullWhereThereIsNothing) {
 }
 
 TEST(ShowBadRows, shouldNameEveryRowAndSayWhatToDo) {
-    intake::ImportReport rows{10, 8, 2, {{3, "name", "character 2 is U+0009 (TAB)"}, {7, "", "4 fields instead of 3"}}};
+    intake::ImportReport rows{
+        10, 8, 2, 0, {}, {}, {{3, "name", "character 2 is U+0009 (TAB)"}, {7, "", "4 fields instead of 3"}}};
     testing::internal::CaptureStderr();
     show_bad_rows(rows, "names.csv", true, false);
     EXPECT_EQ(testing::internal::GetCapturedStderr(),
@@ -164,7 +168,7 @@ TEST(ShowBadRows, shouldNameEveryRowAndSayWhatToDo) {
 }
 
 TEST(ShowBadRows, shouldCountWhatItDoesNotName) {
-    intake::ImportReport rows{10, 5, 5, {{3, "name", "bad"}}};
+    intake::ImportReport rows{10, 5, 5, 0, {}, {}, {{3, "name", "bad"}}};
     testing::internal::CaptureStderr();
     show_bad_rows(rows, "names.csv", false, false);
     EXPECT_EQ(testing::internal::GetCapturedStderr(), "linefeed: names.csv: line 3, column name: bad\n"

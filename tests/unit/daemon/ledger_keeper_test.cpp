@@ -207,7 +207,7 @@ TEST_F(LedgerKeeperTest, shouldFindWhatACrashLeftOpen) {
     EXPECT_EQ(found->records, closed(131, 611));
     EXPECT_EQ(found->printer, "tcp://10.0.0.5:3000");
     EXPECT_EQ(found->facts, (feeder::OpenRun{RecordNumber{100}, RecordNumber{130}, RecordNumber{611}, "104711", 5000,
-                                             RecordNumber{77}}));
+                                             RecordNumber{77}, RecordNumber{1999}}));
 }
 
 TEST_F(LedgerKeeperTest, shouldSettleACrashedRunBeforeTheNext) {

@@ -165,7 +165,7 @@ TEST(FeederStopping, shouldStopWhenThePrinterHasLostItsMemory) {
         const auto& settle = std::get<Settle>(story.actions[0]);
         EXPECT_FALSE(settle.evidence.uninterrupted);
         story.expect((back_to == 0
-                          ? "settle: printed none, in doubt 103-103, unused 104-106 by total print counter; !FF; "
+                          ? "settle: printed none, in doubt 103-104, unused 105-106 by total print counter; !FF; "
                           : "settle: printed none, in doubt 103-106, unused none by no evidence; !FF; ") +
                      ended(OutcomeCode::printer_restarted));
     }

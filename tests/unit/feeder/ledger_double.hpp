@@ -52,7 +52,8 @@ public:
             return false;
         }
         granted_ = RecordRange::closed(RecordNumber{number_of(first)}, RecordNumber{number_of(behind) - 1});
-        started_ = {granted_.first(), {}, {}, "S1", begin.printer.total_prints, begin.last_printed_before};
+        started_ = {granted_.first(), {}, {}, "S1", begin.printer.total_prints, begin.last_printed_before,
+                    granted_.last()};
         issued_ = granted_.first().previous();
         issue(std::min(granted_.last().value(), granted_.first().value() + 11));
         return true;

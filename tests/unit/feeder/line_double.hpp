@@ -343,9 +343,7 @@ private:
             ledger_.confirm(printed->through.value());
         } else if (const auto* settle = std::get_if<Settle>(&action)) {
             ledger_.settle(settle->verdict);
-            if (!settle->earlier_run) {
-                tell([this](Actions& out) { feeder_->on_settled(out); });
-            }
+            tell([this](Actions& out) { feeder_->on_settled(out); });
         }
     }
 

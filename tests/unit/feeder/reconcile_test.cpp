@@ -129,6 +129,26 @@ TEST(Reconcile, shouldDoubtEverythingWhenSomethingElseWasPrintedMeanwhile) {
         << "under our eyes the number stays ours";
 }
 
+TEST(Reconcile, shouldTakeAPrintedEndMarkerForTheProofOfTheLastRecord) {
+    const std::string all_printed = "printed 111-120, in doubt none, unused none by mail status";
+    OpenRun run = run_with(110);
+    run.last = no(120);
+    EXPECT_EQ(verdict(run, says(121, 1021)), all_printed);
+    EXPECT_EQ(verdict(run, says(121, 1021, false)), all_printed) << "it is the marker that is unfinished";
+    EXPECT_EQ(verdict(run, says(121, 1020, false)), all_printed);
+    EXPECT_EQ(verdict(run, says(121, std::nullopt)), all_printed);
+    EXPECT_EQ(verdict(run, says(121, 1000)), all_printed) << "a counter that does not move";
+    EXPECT_EQ(verdict(run, says(121, 1020)), doubt_from_111) << "a record was skipped";
+    EXPECT_EQ(verdict(run, says(121, 1022)), doubt_from_111) << "something else was printed";
+    EXPECT_EQ(verdict(run, says(122, 1022)), doubt_from_111) << "there is one marker";
+    run.last = no(130);
+    EXPECT_EQ(verdict(run, says(121, 1021)), doubt_from_111) << "no marker had been sent by then";
+    constexpr std::uint32_t max = 4294967295U;
+    const OpenRun upper{no(max - 2), no(max - 3), no(max), "", 0, no(5), no(max)};
+    EXPECT_EQ(verdict(upper, says(max, 3)),
+              "printed 4294967293-4294967295, in doubt none, unused none by mail status and total print counter");
+}
+
 TEST(Reconcile, shouldBelieveARestartedPrinterOnlyWithItsCounter) {
     Evidence evidence = uninterrupted(says(115, 1015));
     evidence.restarted = true;
@@ -190,24 +210,29 @@ TEST(Reconcile, shouldAskTheCounterAboutANumberLeftOverWithinTheRun) {
 
 // No number: the printer lost its memory, or printed nothing since.
 
-TEST(Reconcile, shouldGoByTheCounterAfterAPowerCycleAndDoubtTheLastPrint) {
-    // The power may have failed in the middle of the last print that was counted.
+TEST(Reconcile, shouldGoByTheCounterAfterAPowerCycleAndDoubtThePrintInWhichItCame) {
+    // Whether a print counts as it begins or as it ends is not known: it is the last one counted or the next.
     for (const bool finished : {false, true}) {
         EXPECT_EQ(verdict(run_with(110), says(0, 1015, finished)),
-                  "printed 111-114, in doubt 115-115, unused 116-120 by total print counter");
+                  "printed 111-114, in doubt 115-116, unused 117-120 by total print counter");
     }
     EXPECT_EQ(verdict(run_with(110), says(0, 1011)),
-              "printed none, in doubt 111-111, unused 112-120 by total print counter");
+              "printed none, in doubt 111-112, unused 113-120 by total print counter");
     EXPECT_EQ(verdict(run_with(110), says(0, 1010)),
-              "printed none, in doubt none, unused 111-120 by total print counter")
+              "printed none, in doubt 111-111, unused 112-120 by total print counter")
         << "110 is confirmed, and finished";
+    EXPECT_EQ(verdict(run_with(110), says(0, 1019)),
+              "printed 111-118, in doubt 119-120, unused none by total print counter");
     EXPECT_EQ(verdict(run_with(110), says(0, 1020)),
               "printed 111-119, in doubt 120-120, unused none by total print counter");
+    EXPECT_EQ(verdict(run_with(119), says(0, 1020)),
+              "printed none, in doubt 120-120, unused none by total print counter");
     EXPECT_EQ(verdict(run_with(100), says(0, 1003)),
-              "printed 101-102, in doubt 103-103, unused 104-120 by total print counter");
-    EXPECT_EQ(verdict(run_with(100), says(0, 1000)), nothing_printed_by + "total print counter");
+              "printed 101-102, in doubt 103-104, unused 105-120 by total print counter");
+    EXPECT_EQ(verdict(run_with(100), says(0, 1000)),
+              "printed none, in doubt 101-101, unused 102-120 by total print counter");
     EXPECT_EQ(verdict(run_with(110), uninterrupted(says(0, 1015))),
-              "printed 111-114, in doubt 115-115, unused 116-120 by total print counter");
+              "printed 111-114, in doubt 115-116, unused 117-120 by total print counter");
 }
 
 TEST(Reconcile, shouldDoubtEverythingAfterAPowerCycleWhenTheCounterCannotBe) {
@@ -223,7 +248,7 @@ TEST(Reconcile, shouldKnowAPrinterThatHadNoNumberBeforeEither) {
     OpenRun run = run_with(100);
     run.last_printed_before = no(0);
     EXPECT_EQ(verdict(run, says(0, 1000)), nothing_printed_by + "mail status and total print counter");
-    EXPECT_EQ(verdict(run, says(0, 1003)), "printed 101-102, in doubt 103-103, unused 104-120 by total print counter");
+    EXPECT_EQ(verdict(run, says(0, 1003)), "printed 101-102, in doubt 103-104, unused 105-120 by total print counter");
     EXPECT_EQ(verdict(run, says(0, 1021)), doubt_from_101);
     EXPECT_EQ(verdict(run, says(0, std::nullopt)), doubt_from_101);
 }
@@ -240,7 +265,7 @@ TEST(Reconcile, shouldCountAcrossTheWrapOfTheCounter) {
     run.total_before = 4294967290U;
     EXPECT_EQ(verdict(run, says(115, 9)),
               "printed 101-115, in doubt none, unused 116-120 by mail status and total print counter");
-    EXPECT_EQ(verdict(run, says(0, 9)), "printed 101-114, in doubt 115-115, unused 116-120 by total print counter");
+    EXPECT_EQ(verdict(run, says(0, 9)), "printed 101-114, in doubt 115-116, unused 117-120 by total print counter");
     EXPECT_EQ(verdict(run, says(115, 10)), doubt_from_101);
 }
 
@@ -303,7 +328,7 @@ TEST(Reconcile, shouldCoverExactlyWhatWasIssuedWhateverTheEvidence) {
             ASSERT_LE(verdict.in_doubt.count().value(), evidence.mail.last_print_finished ? 0U : 1U);
             break;
         case Basis::counter:
-            ASSERT_LE(verdict.in_doubt.count().value(), 1U);
+            ASSERT_LE(verdict.in_doubt.count().value(), 2U);
             break;
         }
         ++cases;

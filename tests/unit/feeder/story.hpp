@@ -181,7 +181,7 @@ public:
 
 /// Records 1-200 issued earlier, 100 of them confirmed.
 inline OpenRun earlier_run() {
-    return {RecordNumber{1}, RecordNumber{100}, RecordNumber{200}, "S1", 800, RecordNumber{0}};
+    return {RecordNumber{1}, RecordNumber{100}, RecordNumber{200}, "S1", 800, RecordNumber{0}, RecordNumber{200}};
 }
 
 inline FeederPlan plan_with(const OpenRun& run, bool doubt_blocks = true) {

@@ -47,7 +47,7 @@ TEST(Messages, shouldReadTheMachineStatusOfOldFirmware) {
 
 TEST(Messages, shouldReadEveryNozzleAndMachineState) {
     for (int nozzle = 0; nozzle <= 5; ++nozzle) {
-        for (int machine = 1; machine <= 6; ++machine) {
+        for (int machine = 2; machine <= 6; ++machine) {
             const auto status =
                 parsed_as<MachineStatus>("^0=RS" + std::to_string(nozzle) + "\t" + std::to_string(machine) + "\t0\r");
             EXPECT_EQ(static_cast<int>(status.nozzle), nozzle);
@@ -67,18 +67,25 @@ TEST(Messages, shouldLeaveEmptyParametersOfTheMachineStatusAtTheirDefaults) {
               (MachineStatus{NozzleState::closed, MachineState::ready, {}, false, 0, std::nullopt}));
 }
 
+TEST(Messages, shouldTakeWhatNewerFirmwareAddsToTheMachineStatus) {
+    EXPECT_EQ(parsed_as<MachineStatus>("^0=RS6\t4\t0\t0\t0\r").nozzle, NozzleState::invalid);
+    EXPECT_TRUE(parsed_as<MachineStatus>("^0=RS2\t6\t0\t2\r").cover_open);
+}
+
+TEST(Messages, shouldReadNothingButTheStateInStandby) {
+    EXPECT_EQ(parsed_as<MachineStatus>("^0=RS255\t1\tx\t0\t0\t0\r"), MachineStatus{});
+}
+
 TEST(Messages, shouldRefuseAMachineStatusThatCannotBeTrue) {
-    EXPECT_EQ(reason("^0=RS6\t4\t0\t0\t0\r"), "=RS: parameter 1 is not a nozzle state: \"6\"");
     EXPECT_EQ(reason("^0=RS2\t0\t0\t0\t0\r"), "=RS: parameter 2 is not a machine state: \"0\"");
     EXPECT_EQ(reason("^0=RS2\t7\t0\t0\t0\r"), "=RS: parameter 2 is not a machine state: \"7\"");
     EXPECT_EQ(reason("^0=RS2\t6\t4294967296\r"), "=RS: parameter 3 is not an error number: \"4294967296\"");
-    EXPECT_EQ(reason("^0=RS2\t6\t0\t2\r"), "=RS: parameter 4 is not 0 or 1: \"2\"");
     EXPECT_EQ(reason("^0=RS2\t6\t0\t0\tfast\r"), "=RS: parameter 5 is not a speed: \"fast\"");
     EXPECT_EQ(reason("^0=RS2\t6\t0\t0\t9\t-1\r"), "=RS: parameter 6 is not 0 or 1: \"-1\"");
 }
 
 TEST(Messages, shouldRefuseAMachineStatusThatLacksWhatMatters) {
-    EXPECT_EQ(reason("^0=RS\r"), "=RS: parameter 1 is missing: a nozzle state");
+    EXPECT_EQ(reason("^0=RS\r"), "=RS: parameter 2 is missing: a machine state");
     EXPECT_EQ(reason("^0=RS2\r"), "=RS: parameter 2 is missing: a machine state");
     EXPECT_EQ(reason("^0=RS2\t6\r"), "=RS: parameter 3 is missing: an error number");
     EXPECT_EQ(parsed_as<MalformedMessage>("^0=RS2\t\t0\r").payload, "RS2\t\t0");
