@@ -41,7 +41,10 @@ class Interruption(harness.TestCase):
         number, text = max(on_tape)
         result = self.print(self.file, restarted)
         self.assert_code(6, result)
-        self.assertEqual([f"in doubt: {number}  {text}"], re.findall(r"^in doubt: .*$", result.out, re.MULTILINE))
+        doubtful = re.findall(r"^in doubt: (\d+)  (.*)$", result.out, re.MULTILINE)
+        self.assertEqual((str(number), text), doubtful[0])
+        # The counter does not tell whether it counts a print as it begins or as it ends: the next record may be half printed too.
+        self.assertEqual([str(number + 1)], [doubt[0] for doubt in doubtful[1:]])
         self.finish(restarted, *printers_before, options=("--last-printed", text))
 
     def assert_ledger_complete(self, job):
