@@ -3,7 +3,8 @@
 # protocol and feeder. From a clean clone, as root or with sudo, without questions.
 #
 # usage: tests/run.sh [--long]
-#   --long   clang-tidy, the rates for 60 s each instead of 5 s, and each fuzz target for 10 minutes (LINEFEED_FUZZ_SECONDS)
+#   --long   clang-tidy, the rates for 60 s each instead of 5 s, each fuzz target for 10 minutes (LINEFEED_FUZZ_SECONDS),
+#            and the storage tests in full
 set -uo pipefail
 cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.." || exit 1
 
