@@ -60,8 +60,10 @@ void Feeder::print_mail(Instant now, Actions& out) {
     }
 }
 
+/// The end marker's number may have been there before the run: then it is no proof.
 bool Feeder::marker_printed() const {
-    return marker_sent_ && mail_.last_printed == refill_.range().last().next();
+    return marker_sent_ && mail_.last_printed == refill_.range().last().next() &&
+           (left_over_passed_ || mail_.last_printed != left_over_);
 }
 
 /// Takes the printed number from `mail_`. False if it cannot be right: then the line is being stopped.

@@ -153,7 +153,8 @@ void Feeder::judge(Instant now, Actions& out) {
                       .issued_through = prints_unflushed ? refill_.durable_through() : refill_.sent_through(),
                       .serial_number = facts_.version ? facts_.version->serial_number : std::string{},
                       .total_before = total_before_,
-                      .last_printed_before = left_over_};
+                      .last_printed_before = left_over_,
+                      .last = marker_sent_ ? std::optional{range.last()} : std::nullopt};
     const Verdict verdict = reconcile(run, evidence);
     settled_ = true;
     out.push_back(Settle{verdict, evidence, false});

@@ -82,17 +82,34 @@ CounterSays compare_counter(const OpenRun& run, const Evidence& evidence, Record
     return *prints == 0 ? CounterSays::nothing : CounterSays::too_few;
 }
 
+/// The number behind the last record: the blank end marker has it, which is sent when all records are.
+bool is_marker_number(const OpenRun& run, RecordNumber number) {
+    return run.last && run.issued_through == *run.last && *run.last < RecordNumber::max() && number == run.last->next();
+}
+
+/// The counter has seen every record of the run and the end marker, which may be unfinished, and nothing else.
+bool counter_saw_marker(const OpenRun& run, const Evidence& evidence) {
+    const auto prints = prints_since(run, evidence);
+    const std::uint64_t with_marker = (*run.last - run.first).value() + 2;
+    return prints && (*prints == with_marker ||
+                      (*prints + std::uint64_t{1} == with_marker && !evidence.mail.last_print_finished));
+}
+
 /// Nothing of the run is confirmed, and the printer reports the number that it had before the run. Either no record was
 /// printed, or the printer was switched off, or exactly this record was the last one. The counter knows.
 Verdict by_left_over_number(const OpenRun& run, const Evidence& evidence) {
     const RecordNumber reported = evidence.mail.last_printed;
     const bool within = run.first <= reported && reported <= run.issued_through;
-    if (evidence.uninterrupted && !within) {
+    const bool marker = is_marker_number(run, reported);
+    if (evidence.uninterrupted && !within && !marker) {
         return printed_through(run, run.printed_through, true, Basis::mail_status);
     }
     const auto prints = prints_since(run, evidence);
     if (prints && *prints == 0) {
         return printed_through(run, run.printed_through, true, Basis::mail_status_and_counter);
+    }
+    if (marker && counter_saw_marker(run, evidence)) {
+        return printed_through(run, run.issued_through, true, Basis::mail_status_and_counter);
     }
     if (prints && within && compare_counter(run, evidence, reported) == CounterSays::agrees) {
         return printed_through(run, reported, evidence.mail.last_print_finished, Basis::mail_status_and_counter);
@@ -139,14 +156,11 @@ Verdict by_number(const OpenRun& run, const Evidence& evidence) {
 
 /// The blank end marker behind the last record was printed, so all records were; a counter that moves has seen it too.
 bool shows_end_marker(const OpenRun& run, const Evidence& evidence) {
-    if (!run.last || run.issued_through != *run.last || *run.last == RecordNumber::max() ||
-        evidence.mail.last_printed != run.last->next()) {
+    if (!is_marker_number(run, evidence.mail.last_printed)) {
         return false;
     }
     const auto prints = prints_since(run, evidence);
-    const std::uint64_t with_marker = (*run.last - run.first).value() + 2;
-    return !prints || *prints == 0 || *prints == with_marker ||
-           (*prints + std::uint64_t{1} == with_marker && !evidence.mail.last_print_finished);
+    return !prints || *prints == 0 || counter_saw_marker(run, evidence);
 }
 
 } // namespace

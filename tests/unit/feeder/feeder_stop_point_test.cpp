@@ -133,6 +133,29 @@ TEST(FeederStopPoint, shouldFindTheEndMarkerPrintedOnlyWhenJudging) {
         std::to_string(raw_error(5043)) + ")");
 }
 
+TEST(FeederStopPoint, shouldNotTakeANumberFromBeforeTheRunForItsEndMarker) {
+    Story story;
+    story.identify();
+    story.locate(111);
+    story.granted(109, 110, 110);
+    story.sm(0, 111, 0);
+    story.sm(0, 111, 0);
+    story.sm(0, 111, 0);
+    story.supplied(110);
+    story.sm(1, 111, 0);
+    story.take();
+    story.rs(State::printing);
+    for (int answers = 0; answers < 6; ++answers) {
+        story.sm(1, 111, 0);
+    }
+    EXPECT_NE(story.take().find("end marker 111"), std::string::npos);
+    story.sm(1, 111, 0);
+    story.expect(""); // nothing is printed yet
+    story.rs(State::ready_to_print, raw_error(4711));
+    story.judge(0, 111, true, 1000, raw_error(4711));
+    EXPECT_EQ(story.take().find("settle: printed none, in doubt none, unused 109-110 by"), 0U);
+}
+
 TEST(FeederStopPoint, shouldNotTakeAnyNumberBehindTheLastForItsEndMarker) {
     Story story = printing_with_marker();
     story.sm(0, 112, 0);

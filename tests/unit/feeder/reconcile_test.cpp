@@ -149,6 +149,27 @@ TEST(Reconcile, shouldTakeAPrintedEndMarkerForTheProofOfTheLastRecord) {
               "printed 4294967293-4294967295, in doubt none, unused none by mail status and total print counter");
 }
 
+TEST(Reconcile, shouldAskTheCounterWhetherANumberLeftOverIsThatOfTheEndMarker) {
+    OpenRun run = run_with(100);
+    run.last = no(120);
+    run.last_printed_before = no(121); // 121 was printed before: these are the records that were left
+    for (const bool under_our_eyes : {false, true}) {
+        const auto seen = [under_our_eyes](Evidence evidence) {
+            evidence.uninterrupted = under_our_eyes;
+            return evidence;
+        };
+        EXPECT_EQ(verdict(run, seen(says(121, 1000))), nothing_printed_by + "mail status and total print counter");
+        EXPECT_EQ(verdict(run, seen(says(121, 1021))),
+                  "printed 101-120, in doubt none, unused none by mail status and total print counter");
+        EXPECT_EQ(verdict(run, seen(says(121, 1020, false))),
+                  "printed 101-120, in doubt none, unused none by mail status and total print counter");
+        EXPECT_EQ(verdict(run, seen(says(121, 1020))), doubt_from_101);
+        EXPECT_EQ(verdict(run, seen(says(121, std::nullopt))), doubt_from_101);
+    }
+    run.last.reset(); // no marker was sent
+    EXPECT_EQ(verdict(run, uninterrupted(says(121, std::nullopt))), nothing_printed_by + "mail status");
+}
+
 TEST(Reconcile, shouldBelieveARestartedPrinterOnlyWithItsCounter) {
     Evidence evidence = uninterrupted(says(115, 1015));
     evidence.restarted = true;
