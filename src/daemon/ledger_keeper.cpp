@@ -93,7 +93,7 @@ Result<void> LedgerKeeper::append_verdict(spool::JobId job, spool::RunId run, co
     };
     add(LedgerKind::printed, settle.verdict.printed);
     add(LedgerKind::in_doubt, settle.verdict.in_doubt);
-    for (RecordRange open : state->ranges(RecordState::open)) {
+    for (RecordRange open : settle.provisional ? std::vector<RecordRange>{} : state->ranges(RecordState::open)) {
         if (!settle.verdict.printed.empty()) {
             open = behind(open, settle.verdict.printed.last());
         }
@@ -199,8 +199,18 @@ Result<void> LedgerKeeper::finish(const feeder::Outcome& outcome) {
     if (const auto committed = commit(); !committed) {
         return committed;
     }
-    const LedgerEntry ended{LedgerKind::run_ended, *run_, {}, outcome_json(outcome)};
-    return spool_.append(job_, {&ended, 1});
+    std::vector<LedgerEntry> entries;
+    if (!outcome.issued) { // granted, and surely not in the printer
+        const auto state = spool_.ledger_state(job_);
+        if (!state) {
+            return state.error();
+        }
+        for (const RecordRange open : state->ranges(RecordState::open)) {
+            entries.push_back({LedgerKind::unused, *run_, open, outcome_json(outcome)});
+        }
+    }
+    entries.push_back({LedgerKind::run_ended, *run_, {}, outcome_json(outcome)});
+    return spool_.append(job_, entries);
 }
 
 } // namespace linefeed::daemon

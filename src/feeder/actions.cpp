@@ -14,7 +14,12 @@ struct Printer {
     void operator()(const SendRecords& send) const { out << "=MR " << send.range; }
     void operator()(const SendEndMarker& marker) const { out << "end marker " << marker.number; }
     void operator()(const Settle& settle) const {
-        out << (settle.earlier_run ? "settle the earlier run: " : "settle: ") << settle.verdict;
+        out << "settle " << (settle.earlier_run ? "the earlier run" : "this run");
+        if (settle.provisional) {
+            out << " so far: printed " << settle.verdict.printed << " by " << to_string(settle.verdict.basis);
+        } else {
+            out << ": " << settle.verdict;
+        }
     }
     void operator()(const BeginRun& begin) const {
         out << "begin run, last printed before " << begin.last_printed_before;

@@ -38,11 +38,14 @@ struct SendEndMarker {
     RecordNumber number;
     friend bool operator==(const SendEndMarker&, const SendEndMarker&) = default;
 };
-/// To the ledger: the fate of the records of an earlier run, or of this run at its end.
+/// To the ledger: the fate of the records of an earlier run, or of this run at its end. Answered by
+/// Feeder::on_settled.
 struct Settle {
     Verdict verdict;
     Evidence evidence;
     bool earlier_run = false;
+    /// Only what is surely printed is known so far; the rest stays open until the FIFO is empty.
+    bool provisional = false;
     friend bool operator==(const Settle&, const Settle&) = default;
 };
 /// To the ledger: grant records for a new run. Answered by Feeder::on_granted.

@@ -64,6 +64,9 @@ void Feeder::on_machine_status(const protocol::MachineStatus& status, Instant no
     case Phase::judging:
         judge_status(now, out);
         return;
+    case Phase::clearing:
+        clearing_status(now, out);
+        return;
     case Phase::finishing:
         if (status_.error.raw == acknowledged_) {
             ask_later(Parameter::RS, now);
@@ -79,7 +82,7 @@ void Feeder::on_machine_status(const protocol::MachineStatus& status, Instant no
     case Phase::setting_stop:
     case Phase::loading:
     case Phase::verifying:
-    case Phase::clearing:
+    case Phase::recording:
     case Phase::ended:
         return;
     }
@@ -92,6 +95,7 @@ void Feeder::on_mail_status(const protocol::MailStatus& status, Instant now, Act
     switch (phase_) {
     case Phase::locating:
     case Phase::judging:
+    case Phase::clearing:
         locate_step(now, out);
         return;
     case Phase::taking_over:
@@ -118,24 +122,28 @@ void Feeder::on_mail_status(const protocol::MailStatus& status, Instant now, Act
     case Phase::loading:
     case Phase::starting:
     case Phase::stopping:
+    case Phase::recording:
     case Phase::finishing:
-    case Phase::clearing:
     case Phase::ended:
         return;
     }
 }
 
-/// Only the second of two answers is surely current; and a print in progress gets the time to finish.
+/// Only the second of two answers is surely current; a print in progress gets the time to finish, and a flush the time
+/// to be carried out.
 void Feeder::locate_step(Instant now, Actions& out) {
     if (mail_outstanding_ > 0) {
         mail_reads_ = 0; // an answer to an inquiry from before the stop
         return;
     }
     const bool print_in_progress = !mail_.last_print_finished && status_.machine != MachineState::printing;
+    const bool not_flushed = phase_ == Phase::clearing && mail_.entries > 0;
     if (mail_reads_ < 2) {
         ask(Parameter::SM, now, out);
-    } else if (print_in_progress && deadline_ && now < *deadline_) {
+    } else if ((print_in_progress || not_flushed) && deadline_ && now < *deadline_) {
         ask_later(Parameter::SM, now);
+    } else if (not_flushed) {
+        end(OutcomeCode::fifo_not_flushed, out); // what lies there may still be printed: its fate stays open
     } else {
         ask(Parameter::CC, now, out);
     }
@@ -143,10 +151,20 @@ void Feeder::locate_step(Instant now, Actions& out) {
 
 void Feeder::on_counters(const protocol::Counters& counters, Instant now, Actions& out) {
     facts_.total_prints = counters.total;
+    counters_outstanding_ = std::max(0, counters_outstanding_ - 1);
+    if (phase_ == Phase::printing) {
+        print_counters(now, out);
+        return;
+    }
+    if (counters_outstanding_ > 0 || mail_reads_ < 2) {
+        return; // asked before the printer stood
+    }
     if (phase_ == Phase::locating) {
         located(now, out);
     } else if (phase_ == Phase::judging) {
         judge(now, out);
+    } else if (phase_ == Phase::clearing) {
+        judge_finally(now, out);
     }
 }
 

@@ -6,6 +6,7 @@
 #include "base/record_number.hpp"
 #include "base/time.hpp"
 #include "feeder/actions.hpp"
+#include "feeder/counter_proof.hpp"
 #include "feeder/pacing.hpp"
 #include "feeder/refill.hpp"
 
@@ -24,6 +25,9 @@ struct FeederSettings {
     BoundedList<std::uint32_t, 16> acknowledge;
     Duration status_interval = std::chrono::milliseconds{500}; ///< `?RS` while printing
     Duration retry_interval = std::chrono::milliseconds{20};   ///< between inquiries while waiting for a state
+    /// From the first fill to `!GO`: the first product may come at once, and its record must lie in the FIFO 3 ms before
+    /// (protocol, section 5).
+    Duration fill_lead = std::chrono::milliseconds{4};
     Duration flush_timeout = std::chrono::seconds{2};
     Duration verify_timeout = std::chrono::seconds{5};
     Duration start_timeout = std::chrono::seconds{15};
@@ -55,12 +59,13 @@ enum class Phase {
     setting_stop,   ///< `=CM`, read back
     loading,        ///< waits for the first records in memory and their intent on disk
     verifying,      ///< first fill sent: did the printer take it?
-    starting,       ///< `!GO`
+    starting,       ///< a moment for the records to be loaded, then `!GO`
     printing,
     stopping,  ///< `!ST`
     judging,   ///< stopped: `?RS`, `?SM` twice, `?CC`
-    finishing, ///< all printed: `!EQ` for message 1223
-    clearing,  ///< never printed: waits for the ledger, then `!FF`
+    recording, ///< the ledger takes down what is surely printed, before the flush
+    clearing,  ///< `!FF`, and the last look: `?RS`, `?SM` twice, `?CC`
+    finishing, ///< all printed: `!EQ` for what mailing leaves behind
     ended,
 };
 
@@ -90,7 +95,7 @@ public:
     void on_durable(RecordNumber through, Instant now, Actions& out);
     void on_supplied(RecordNumber through, Instant now, Actions& out);
     /// A Settle is durable.
-    void on_settled(Actions& out);
+    void on_settled(Instant now, Actions& out);
     void on_storage_failed(Instant now, Actions& out);
 
     /// Stop the line and find the truth.
@@ -125,7 +130,6 @@ private:
     void identified(Instant now, Actions& out);
     void located(Instant now, Actions& out);
     [[nodiscard]] bool prints_earlier_run() const;
-    [[nodiscard]] bool settle_earlier(Actions& out);
     void locate_again(Instant now, Actions& out);
     void check_ready(Instant now, Actions& out);
     void check_errors(Instant now, Actions& out);
@@ -133,6 +137,7 @@ private:
     void stop_point_answered(Instant now, Actions& out);
     void try_loading(Instant now, Actions& out);
     void verify(Instant now, Actions& out);
+    void go(Instant now, Actions& out);
     void start_answered(Instant now, Actions& out);
     [[nodiscard]] bool may_acknowledge(const protocol::PrinterError& error) const;
 
@@ -148,6 +153,12 @@ private:
     void print_status(Instant now, Actions& out);
     void print_mail(Instant now, Actions& out);
     [[nodiscard]] bool take_report(Instant now, Actions& out);
+    void confirm_reported(Actions& out);
+    void ask_for_proof(Instant now, Actions& out);
+    void confirm(RecordNumber through, Actions& out);
+    [[nodiscard]] std::uint64_t prints_through(RecordNumber number) const;
+    void print_counters(Instant now, Actions& out);
+    [[nodiscard]] bool stop_would_show() const;
     [[nodiscard]] bool stop_point_vanished(Instant now, Actions& out);
     void stop_suspected(Instant now, Actions& out);
     void insist_on_stop_point(Actions& out);
@@ -155,15 +166,24 @@ private:
     void refill_now(Actions& out);
     [[nodiscard]] bool marker_printed() const;
 
-    // feeder_stopping.cpp: from the last print or an interruption to the truth and the end
+    // feeder_stopping.cpp: from the last print or an interruption to the end
     void begin_stop(OutcomeCode cause, Instant now, Actions& out);
     void send_stop(Instant now, Actions& out);
     void begin_judging(Instant now, Actions& out);
     void judge_status(Instant now, Actions& out);
-    void judge(Instant now, Actions& out);
     [[nodiscard]] OutcomeCode cause_of_stop() const;
-    void clear(Actions& out);
+    void finish(Instant now, Actions& out);
     void end(OutcomeCode code, Actions& out);
+
+    // feeder_judging.cpp: the truth about the earlier run or this one, and the flush
+    [[nodiscard]] OpenRun open_run() const;
+    [[nodiscard]] Evidence evidence() const;
+    void judge(Instant now, Actions& out);
+    void record_printed(const Verdict& verdict, const Evidence& evidence, Instant now, Actions& out);
+    void clear(Instant now, Actions& out);
+    void clearing_status(Instant now, Actions& out);
+    void judge_finally(Instant now, Actions& out);
+    void settle(const Verdict& verdict, const Evidence& evidence, Instant now, Actions& out);
 
     FeederSettings settings_;
     FeederPlan plan_;
@@ -178,12 +198,14 @@ private:
     int mail_reads_ = 0; ///< `=SM` answers in this phase
     int identity_answers_missing_ = 0;
     int mail_outstanding_ = 0;
+    int counters_outstanding_ = 0;
     bool status_outstanding_ = false;
     std::optional<Instant> deadline_; ///< of the phase
     std::optional<Instant> retry_at_;
     protocol::Parameter retry_what_ = protocol::Parameter::RS;
     std::optional<Instant> mail_due_;
     std::optional<Instant> status_due_;
+    std::optional<Instant> go_due_;
 
     bool taking_over_ = false;
     std::optional<std::uint64_t> in_printer_through_; ///< by the last `=SM`: printed + entries + 1
@@ -202,13 +224,13 @@ private:
     std::optional<Instant> all_printed_at_;
     bool marker_sent_ = false;
     bool any_sent_ = false;
-    bool earlier_settled_ = false; ///< Settle of the earlier run is out
-    bool fifo_is_ours_ = false;    ///< it was seen empty after `!FF`, or is taken over: it holds nothing but this run
-    bool flush_owed_ = false;      ///< its records are settled and may still lie in the FIFO
-    int settles_pending_ = 0;      ///< Settles that the ledger has not acknowledged
-    bool settled_ = false;         ///< Settle of this run is out
+    int settles_pending_ = 0; ///< Settles that the ledger has not acknowledged
+    /// The look before the flush: it stands if the flush makes the printer forget its number.
+    Evidence first_look_;
     std::int32_t error_noticed_ = 0;
-    RecordNumber confirmed_through_;
+    RecordNumber reported_through_;  ///< surely printed by the printer's number
+    RecordNumber confirmed_through_; ///< of those, confirmed to the ledger
+    CounterProof counter_proof_;     ///< of the reported number, where a stop would not show
     std::optional<OutcomeCode> cause_;
 };
 

@@ -48,30 +48,11 @@ void Feeder::located(Instant now, Actions& out) {
         }
         return;
     }
-    // What lies in the FIFO could still be printed by hand, before it may be flushed: its fate is settled at the last
-    // moment.
-    if (mail_.entries == 0 && !settle_earlier(out)) {
-        return;
+    if (plan_.open) {
+        judge(now, out);
+    } else {
+        check_ready(now, out);
     }
-    check_ready(now, out);
-}
-
-/// The truth about the earlier run goes to the ledger. False if nothing may be printed because of it.
-bool Feeder::settle_earlier(Actions& out) {
-    if (!plan_.open || earlier_settled_) {
-        return true;
-    }
-    const Evidence evidence{.mail = mail_, .printer = facts_};
-    const Verdict verdict = reconcile(*plan_.open, evidence);
-    earlier_settled_ = true;
-    out.push_back(Settle{verdict, evidence, true});
-    ++settles_pending_;
-    flush_owed_ = true;
-    if (verdict.in_doubt.empty() || !plan_.doubt_blocks) {
-        return true;
-    }
-    end(OutcomeCode::records_in_doubt, out);
-    return false;
 }
 
 /// Asks once more where the printer is: time has passed since it said so.
@@ -135,15 +116,6 @@ void Feeder::check_errors(Instant now, Actions& out) {
         end(OutcomeCode::records_not_taken, out);
         return;
     }
-    if (plan_.open && !earlier_settled_) {
-        if (phase_ != Phase::locating) {
-            locate_again(now, out);
-            return;
-        }
-        if (!settle_earlier(out)) {
-            return;
-        }
-    }
     enter(Phase::granting, now, Duration::max());
     out.push_back(BeginRun{facts_, mail_.last_printed});
 }
@@ -158,10 +130,9 @@ void Feeder::on_granted(RecordRange range, RecordNumber durable_through, Instant
     }
     refill_.begin(range, RecordCount{mail_.depth});
     refill_.durable(durable_through);
-    confirmed_through_ = range.first().previous();
+    confirmed_through_ = reported_through_ = range.first().previous();
     total_before_ = facts_.total_prints;
     left_over_ = mail_.last_printed;
-    flush_owed_ = false;
     enter(Phase::flushing, now, settings_.flush_timeout);
     out.push_back(Command{protocol::Action::flush_fifo});
     ask(Parameter::SM, now, out);
@@ -182,7 +153,6 @@ void Feeder::flushed(Instant now, Actions& out) {
         ask_later(Parameter::SM, now);
         return;
     }
-    fifo_is_ours_ = true;
     left_over_ = mail_.last_printed;
     enter(Phase::setting_stop, now, Duration::max());
     out.push_back(SetStopAt{refill_.range().last()});
@@ -229,6 +199,11 @@ void Feeder::verify(Instant now, Actions& out) {
     if (!as_expected) {
         out.push_back(Notice{NoticeCode::entries_differ, {}});
     }
+    enter(Phase::starting, now, Duration::max());
+    go_due_ = now + settings_.fill_lead;
+}
+
+void Feeder::go(Instant now, Actions& out) {
     enter(Phase::starting, now, settings_.start_timeout);
     out.push_back(Command{protocol::Action::start_print});
     ask(Parameter::RS, now, out);

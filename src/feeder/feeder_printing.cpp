@@ -47,14 +47,14 @@ void Feeder::print_mail(Instant now, Actions& out) {
         pacing_.printed(refill_.printed_through() - refill_.range().first().previous(), now);
         insist_on_stop_point(out);
         refill_now(out);
-        if (confirmed_through_ == refill_.range().last()) {
+        ask_for_proof(now, out);
+        if (reported_through_ == refill_.range().last()) {
             all_printed(now, out);
         }
     }
     if (phase_ == Phase::printing) {
         // Nothing waits for room once all is sent: only a printer without stop point must be caught quickly then.
-        const bool stops_itself = stop_point_ == StopPoint::kept || stop_point_ == StopPoint::kept_idle;
-        const Duration least = refill_.all_sent() && stops_itself ? settings_.retry_interval : Duration{0};
+        const Duration least = refill_.all_sent() && stop_would_show() ? settings_.retry_interval : Duration{0};
         mail_due_ =
             std::max(now, std::min(mail_due_.value_or(now), now + pacing_.poll_interval(refill_.level()))) + least;
     }
@@ -81,19 +81,74 @@ bool Feeder::take_report(Instant now, Actions& out) {
         return false;
     }
     const bool finished = mail_.last_print_finished || behind_last;
-    const RecordNumber sure = finished ? printed : std::max(confirmed_through_, printed.previous());
-    if (sure > confirmed_through_) {
-        confirmed_through_ = sure;
-        out.push_back(ConfirmPrinted{sure, mail_});
+    if (pacing_.leaps(refill_.printed_through() - refill_.range().first().previous(), now)) {
+        counter_proof_.doubt(); // another client may have flushed the FIFO: no stop point shows that
     }
+    reported_through_ = finished ? printed : std::max(reported_through_, printed.previous());
+    confirm_reported(out);
     return true;
+}
+
+/// Where the stop point would show a stop, the number proves all records up to it; elsewhere, and behind a leap, the
+/// counter has to.
+void Feeder::confirm_reported(Actions& out) {
+    if (!stop_would_show()) {
+        counter_proof_.doubt();
+    }
+    const bool proven = counter_proof_.reported(prints_through(mail_.last_printed));
+    if (proven || !counter_proof_.doubted() || !total_before_) {
+        confirm(reported_through_, out);
+    }
+}
+
+void Feeder::ask_for_proof(Instant now, Actions& out) {
+    const bool wanted = reported_through_ > confirmed_through_ && total_before_ && counter_proof_.wants_count(now);
+    if (wanted && phase_ == Phase::printing && counters_outstanding_ == 0) {
+        ask(Parameter::CC, now, out);
+        ask(Parameter::SM, now, out);
+        ask(Parameter::SM, now, out);
+    }
+}
+
+bool Feeder::stop_would_show() const {
+    return stop_point_ == StopPoint::kept || stop_point_ == StopPoint::kept_idle;
+}
+
+std::uint64_t Feeder::prints_through(RecordNumber number) const {
+    const RecordNumber first = refill_.range().first();
+    return number < first ? 0 : (number - first).value() + 1;
+}
+
+void Feeder::confirm(RecordNumber through, Actions& out) {
+    if (through > confirmed_through_) {
+        confirmed_through_ = through;
+        out.push_back(ConfirmPrinted{through, mail_});
+    }
+}
+
+void Feeder::print_counters(Instant now, Actions& out) {
+    std::optional<std::uint32_t> prints;
+    if (facts_.total_prints && total_before_) {
+        prints = *facts_.total_prints - *total_before_;
+    }
+    switch (counter_proof_.counted(prints, prints_through(reported_through_), stop_would_show(), now)) {
+    case CounterProof::Result::consistent:
+        return;
+    case CounterProof::Result::no_counter:
+        confirm(reported_through_, out);
+        return;
+    case CounterProof::Result::behind:
+        restarted_ = true;
+        begin_stop(OutcomeCode::stopped_at_printer, now, out);
+        return;
+    }
 }
 
 /// A stop point that stood and stands no more: the printer has stopped, or its firmware drops the stop point at the
 /// start. `?RS` tells which. Until then nothing is sent and no number is believed: behind a stop the FIFO is empty, and
 /// a refill would let the printer go on behind the records it has thrown away.
 bool Feeder::stop_point_vanished(Instant now, Actions& out) {
-    if (stop_point_ != StopPoint::kept && stop_point_ != StopPoint::kept_idle) {
+    if (!stop_would_show()) {
         return false;
     }
     if (mail_.stop_at == refill_.range().last()) {

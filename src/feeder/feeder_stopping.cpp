@@ -1,5 +1,5 @@
-// The feeder's way from the last print, or from an interruption, to the truth: the line is stopped, the printer is
-// asked where it is, the verdict goes to the ledger, and only then anything is acknowledged or flushed.
+// The feeder's way from the last print, or from an interruption, to the end: the line is stopped, the truth is found
+// (feeder_judging.cpp), and only then anything is acknowledged.
 #include "feeder/feeder.hpp"
 #include "feeder/mailing_error.hpp"
 
@@ -8,39 +8,17 @@ namespace linefeed::feeder {
 using protocol::MachineState;
 using protocol::Parameter;
 
-void Feeder::on_settled(Actions& out) {
-    --settles_pending_;
-    if (phase_ == Phase::clearing && settles_pending_ <= 0) {
-        clear(out);
-    }
-}
-
-/// The ledger knows the truth: what the printer still holds is thrown away.
-void Feeder::clear(Actions& out) {
-    flush_owed_ = false;
-    out.push_back(Command{protocol::Action::flush_fifo});
-    end(*cause_, out);
-}
-
-namespace {
-
-/// Whether the printer and the ledger are still there at such an end.
-bool can_flush(OutcomeCode code) {
-    return code != OutcomeCode::link_lost && code != OutcomeCode::no_answer && code != OutcomeCode::storage_failed;
-}
-
-} // namespace
-
-/// The line is stopped and the truth is found all the same, for people; but the ledger does not take it down, so
-/// nothing is acknowledged or flushed.
+/// The line is stopped. The ledger takes down no truth any more, so nothing is asked, acknowledged or flushed: the next
+/// start finds it.
 void Feeder::on_storage_failed(Instant now, Actions& out) {
     switch (phase_) {
     case Phase::stopping:
-    case Phase::judging:
         cause_ = OutcomeCode::storage_failed;
         return;
-    case Phase::finishing:
+    case Phase::judging:
+    case Phase::recording:
     case Phase::clearing:
+    case Phase::finishing:
         end(OutcomeCode::storage_failed, out);
         return;
     case Phase::idle:
@@ -93,10 +71,15 @@ void Feeder::begin_stop(OutcomeCode cause, Instant now, Actions& out) {
         cause_ = cause;
         send_stop(now, out);
         return;
+    case Phase::recording:
+    case Phase::clearing:
+        if (!has_granted_records()) { // the earlier run stays as open as it is
+            end(cause, out);
+        }
+        return;
     case Phase::stopping:
     case Phase::judging:
     case Phase::finishing:
-    case Phase::clearing:
     case Phase::ended:
         return; // already on the way
     }
@@ -109,6 +92,10 @@ void Feeder::send_stop(Instant now, Actions& out) {
 }
 
 void Feeder::begin_judging(Instant now, Actions& out) {
+    if (cause_ == OutcomeCode::storage_failed) {
+        end(*cause_, out);
+        return;
+    }
     enter(Phase::judging, now, settings_.finish_timeout);
     ask(Parameter::RS, now, out);
 }
@@ -133,77 +120,29 @@ OutcomeCode Feeder::cause_of_stop() const {
     return status_.cover_open ? OutcomeCode::cover_open : OutcomeCode::stopped_at_printer;
 }
 
-void Feeder::judge(Instant now, Actions& out) {
-    const RecordRange range = refill_.range();
-    const bool shows_end_message = is_error(status_.error, protocol::error_code::last_record_printed);
-    const bool stop_point_stood = stop_point_ == StopPoint::kept || stop_point_ == StopPoint::kept_idle;
-    Evidence evidence{.mail = mail_,
-                      .printer = facts_,
-                      .end_message = shows_end_message && stop_point_stood && refill_.all_sent() && !restarted_,
-                      .uninterrupted = !memory_lost_,
-                      .restarted = restarted_};
-    if (marker_printed()) { // a blank product behind the last record
-        evidence.mail.last_printed = range.last();
-        evidence.mail.last_print_finished = true;
+/// Every record is printed, and the ledger is told so. What mailing leaves behind then (1223, or 5043 where no stop point
+/// is kept) is acknowledged: the printer would switch itself off otherwise (protocol, section 2).
+void Feeder::finish(Instant now, Actions& out) {
+    if (!is_mailing_error(status_.error)) {
+        end(OutcomeCode::finished, out);
+        return;
     }
-    // Before the flush the printer may hold records of this run that an earlier one has sent.
-    const bool prints_unflushed = !fifo_is_ours_ && range.contains(mail_.last_printed);
-    const OpenRun run{.first = range.first(),
-                      .printed_through = confirmed_through_,
-                      .issued_through = prints_unflushed ? refill_.durable_through() : refill_.sent_through(),
-                      .serial_number = facts_.version ? facts_.version->serial_number : std::string{},
-                      .total_before = total_before_,
-                      .last_printed_before = left_over_,
-                      .last = marker_sent_ ? std::optional{range.last()} : std::nullopt};
-    const Verdict verdict = reconcile(run, evidence);
-    settled_ = true;
-    out.push_back(Settle{verdict, evidence, false});
-    ++settles_pending_;
-
-    cause_ = cause_of_stop();
-    const RecordNumber printed = verdict.printed.empty() ? confirmed_through_ : verdict.printed.last();
-    if (*cause_ == OutcomeCode::storage_failed) {
-        end(*cause_, out);
-    } else if (verdict.in_doubt.empty() && printed == range.last()) {
-        if (!shows_end_message) {
-            end(OutcomeCode::finished, out);
-            return;
-        }
-        acknowledged_ = status_.error.raw;
-        enter(Phase::finishing, now, settings_.finish_timeout);
-        out.push_back(Command{protocol::Action::acknowledge_errors});
-        ask(Parameter::RS, now, out);
-    } else if (any_sent_ || mail_.entries > 0) {
-        // Sent and perhaps never started: nobody may print them unseen. The entries do not tell, a single record counts
-        // as none (protocol, section 5); so the FIFO is flushed whatever they say.
-        enter(Phase::clearing, now, settings_.stop_timeout);
-    } else {
-        end(*cause_, out);
-    }
+    acknowledged_ = status_.error.raw;
+    enter(Phase::finishing, now, settings_.finish_timeout);
+    out.push_back(Command{protocol::Action::acknowledge_errors});
+    ask(Parameter::RS, now, out);
 }
 
 void Feeder::end(OutcomeCode code, Actions& out) {
     if (phase_ == Phase::ended) {
         return;
     }
-    if (flush_owed_ && can_flush(code)) {
-        // The earlier run's records are settled, and may still lie in the FIFO, where somebody could start them.
-        cause_ = code;
-        enter(Phase::clearing, {}, Duration::max());
-        if (settles_pending_ <= 0) {
-            clear(out);
-        }
-        return;
-    }
-    if (fifo_is_ours_ && !any_sent_ && !settled_) { // granted, and surely not in the printer
-        out.push_back(Settle{{.basis = Basis::nothing_issued}, {.mail = mail_, .printer = facts_}, false});
-        ++settles_pending_;
-    }
     phase_ = Phase::ended;
     retry_at_.reset();
     deadline_.reset();
     mail_due_.reset();
     status_due_.reset();
+    go_due_.reset();
     out.push_back(End{{code, status_.machine, status_.error, any_sent_}});
 }
 

@@ -65,13 +65,12 @@ bool Feeder::printed_something_else() const {
 void Feeder::taken_over(RecordRange range, RecordNumber durable_through, Instant now, Actions& out) {
     const OpenRun& run = *plan_.open;
     confirmed_through_ = mail_.last_print_finished ? mail_.last_printed : mail_.last_printed.previous();
-    confirmed_through_ = std::max(confirmed_through_, run.printed_through);
+    confirmed_through_ = reported_through_ = std::max(confirmed_through_, run.printed_through);
     refill_.resume(range, RecordCount{mail_.depth}, durable_through, taken_sent_through_, mail_.last_printed);
     total_before_ = run.total_before;
     left_over_ = run.last_printed_before;
     left_over_passed_ = true;
     any_sent_ = true;
-    fifo_is_ours_ = true;
     enter(Phase::printing, now, Duration::max());
     pacing_.restart(now, refill_.printed_through() - range.first().previous());
     out.push_back(Notice{NoticeCode::taken_over, {}});

@@ -20,6 +20,7 @@ void Feeder::enter(Phase phase, Instant now, Duration timeout) {
     retry_at_.reset();
     mail_due_.reset();
     status_due_.reset();
+    go_due_.reset();
     deadline_.reset();
     if (timeout != Duration::max()) {
         deadline_ = now + timeout;
@@ -33,6 +34,9 @@ void Feeder::ask(Parameter what, Instant now, Actions& out) {
     }
     if (what == Parameter::RS) {
         status_outstanding_ = true;
+    }
+    if (what == Parameter::CC) {
+        ++counters_outstanding_;
     }
     out.push_back(Inquire{what});
 }
@@ -69,13 +73,14 @@ void Feeder::on_deadline(Instant now, Actions& out) {
     case Phase::finishing:
         end(OutcomeCode::finished, out);
         return; // as in on_no_answer()
-    case Phase::clearing:
-        end(*cause_, out); // the ledger does not answer: nothing is flushed
+    case Phase::recording:
+        end(OutcomeCode::storage_failed, out); // the ledger does not answer: nothing is flushed
         return;
     case Phase::locating:
     case Phase::judging:
+    case Phase::clearing:
         deadline_.reset();
-        return; // the print in progress had its time: locate_step() goes on without
+        return; // the print in progress, or the flush, had its time: locate_step() goes on without
     case Phase::idle:
     case Phase::identifying:
     case Phase::taking_over:
@@ -97,6 +102,9 @@ void Feeder::on_time(Instant now, Actions& out) {
         retry_at_.reset();
         ask(retry_what_, now, out);
     }
+    if (go_due_ && now >= *go_due_) {
+        go(now, out);
+    }
     if (phase_ != Phase::printing) {
         return;
     }
@@ -117,6 +125,7 @@ std::optional<Instant> Feeder::next_wake() const {
     };
     consider(deadline_);
     consider(retry_at_);
+    consider(go_due_);
     if (phase_ == Phase::printing) {
         if (mail_outstanding_ < max_mail_outstanding) {
             consider(mail_due_);

@@ -43,6 +43,15 @@ double Pacing::rate() const {
     return seconds > 0 ? static_cast<double>((last.count - first.count).value()) / seconds : 0.0;
 }
 
+bool Pacing::leaps(RecordCount count, Instant now) const {
+    LINEFEED_ASSERT(size_ > 0);
+    const Sample& newest = samples_[(oldest_ + size_ - 1) % samples_kept];
+    constexpr double jitter = 8.0; // answers do not come as evenly as they were asked for
+    const double at_most = std::max(2.0 * rate(), 4.0 * settings_.burst_rate);
+    const double seconds = std::chrono::duration<double>(now - newest.at).count();
+    return static_cast<double>((count - newest.count).value()) > jitter + at_most * seconds;
+}
+
 Duration Pacing::poll_interval(RecordCount level) const {
     using Seconds = std::chrono::duration<double>;
     const double seconds_to_empty = static_cast<double>(level.value()) / std::max(rate(), settings_.burst_rate);

@@ -32,6 +32,8 @@ public:
     void printed(RecordCount count, Instant now);
     /// Prints per second over the last second or so; 0 while the line stands still.
     [[nodiscard]] double rate() const;
+    /// `count` is clearly more than the line can have printed since the last answer: records may have been skipped.
+    [[nodiscard]] bool leaps(RecordCount count, Instant now) const;
     /// How long after one inquiry the next is due, with `level` records in the printer at most.
     [[nodiscard]] Duration poll_interval(RecordCount level) const;
     /// Whether `credit` records should be sent now, or rather be collected into a larger block.

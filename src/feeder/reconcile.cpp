@@ -35,26 +35,22 @@ std::optional<std::uint32_t> prints_since(const OpenRun& run, const Evidence& ev
     return *evidence.printer.total_prints - *run.total_before;
 }
 
-/// The verdict of the counter alone: right as long as the printer has printed nothing but this run. A printer that lost
-/// its memory cannot say which print it lost it in.
-std::optional<Verdict> by_counter(const OpenRun& run, const Evidence& evidence) {
+/// The counter alone. Behind a loss of memory it has seen the prints of whoever used the printer, so it only bounds
+/// this run from above; and the print during which the memory was lost may be counted or not.
+Verdict by_counter(const OpenRun& run, const Evidence& evidence) {
     const auto prints = prints_since(run, evidence);
-    if (!prints || *prints > (run.issued_through - run.first).value() + 1) {
-        return std::nullopt;
+    if (!prints) {
+        return all_in_doubt(run);
     }
-    const RecordNumber last{run.first.value() + *prints - 1};
-    if (last < run.printed_through) {
-        return std::nullopt;
+    const std::uint64_t in_progress = std::uint64_t{run.first.value()} + *prints;
+    if (in_progress <= run.printed_through.value() || in_progress > std::uint64_t{run.issued_through.value()} + 1) {
+        return all_in_doubt(run); // fewer prints than are known, or more than records were sent
     }
-    // Counted as it began or as it ended, nobody knows: the print during which the memory was lost is this one or the
-    // next.
-    Verdict verdict = printed_through(run, last, false, Basis::counter);
-    if (last < run.issued_through) {
-        const RecordNumber first_doubtful = verdict.in_doubt.empty() ? last.next() : verdict.in_doubt.first();
-        verdict.in_doubt = RecordRange::closed(first_doubtful, last.next());
-        verdict.unused = behind(last.next(), run.issued_through);
-    }
-    return verdict;
+    const RecordNumber last{
+        static_cast<std::uint32_t>(std::min(in_progress, std::uint64_t{run.issued_through.value()}))};
+    return {.in_doubt = behind(run.printed_through, last),
+            .unused = behind(last, run.issued_through),
+            .basis = Basis::counter};
 }
 
 /// What the counter makes of the claim that records up to `last` are printed.
@@ -129,10 +125,11 @@ Verdict without_number(const OpenRun& run, const Evidence& evidence) {
         // Under our eyes the printer printed none of these. If its counter moved all the same, one of the two is wrong.
         return prints ? all_in_doubt(run) : printed_through(run, run.printed_through, true, Basis::mail_status);
     }
-    return by_counter(run, evidence).value_or(all_in_doubt(run));
+    return by_counter(run, evidence);
 }
 
-/// The number lies within what was issued and not yet confirmed.
+/// The number lies within what was issued and not yet confirmed. Another job that was printed meanwhile and continues
+/// both the numbers and the count of this run exactly cannot be told from it.
 Verdict by_number(const OpenRun& run, const Evidence& evidence) {
     const RecordNumber reported = evidence.mail.last_printed;
     const CounterSays counter = compare_counter(run, evidence, reported);

@@ -42,7 +42,7 @@ enum class Basis {
     mail_status_and_counter, ///< fresh `=SM`, and the total print counter agrees
     end_message,             ///< message 1223: the printer stopped itself behind the stop-at record
     mail_status,             ///< fresh `=SM` alone: the printer does not report its counter, or it does not move
-    counter,                 ///< the total print counter alone: the printer has lost its memory
+    counter,                 ///< the total print counter alone, an upper bound: the printer has lost its memory
     nothing_issued,          ///< no record had been issued
     none,                    ///< no evidence: the records are in doubt
 };
@@ -78,8 +78,8 @@ struct Verdict {
 [[nodiscard]] bool is_another_printer(const OpenRun& run, const PrinterFacts& printer);
 
 /// Decides. Evidence counts, strongest first: a fresh `=SM` whose number lies within what was issued, by the same
-/// printer that has printed nothing else; the counter alone, when the printer lost its memory. `last print finished` =
-/// 0 makes exactly one record doubtful.
+/// printer that has printed nothing else; the counter as a bound, when the printer lost its memory. `last print
+/// finished` = 0 makes exactly one record doubtful.
 [[nodiscard]] Verdict reconcile(const OpenRun& run, const Evidence& evidence);
 
 } // namespace linefeed::feeder

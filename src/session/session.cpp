@@ -168,7 +168,7 @@ void Session::on_durable(RecordNumber through, Instant now, Effects& out) {
 
 void Session::on_settled(Instant now, Effects& out) {
     Actions actions;
-    feeder_.on_settled(actions);
+    feeder_.on_settled(now, actions);
     carry_out(actions, now, out);
 }
 

@@ -32,7 +32,7 @@ TEST(Actions, shouldPrintAsAStory) {
     settle.verdict.in_doubt = records(3, 3);
     settle.verdict.unused = records(4, 9);
     settle.verdict.basis = Basis::mail_status;
-    EXPECT_EQ(text(settle), "settle: printed 1-2, in doubt 3-3, unused 4-9 by mail status");
+    EXPECT_EQ(text(settle), "settle this run: printed 1-2, in doubt 3-3, unused 4-9 by mail status");
     settle.earlier_run = true;
     EXPECT_EQ(text(settle), "settle the earlier run: printed 1-2, in doubt 3-3, unused 4-9 by mail status");
     EXPECT_EQ(text(BeginRun{{}, RecordNumber{3}}), "begin run, last printed before 3");

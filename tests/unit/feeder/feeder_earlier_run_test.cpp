@@ -12,9 +12,96 @@ TEST(FeederEarlierRun, shouldSettleTheEarlierRunBeforeTheGrant) {
     Story story{quick_settings(), plan_with(earlier_run())};
     story.identify();
     story.locate(150, 950);
-    story.expect(
-        "settle the earlier run: printed 101-150, in doubt none, unused 151-200 by mail status and total print "
-        "counter; begin run, last printed before 150");
+    story.expect("settle the earlier run so far: printed 101-150 by mail status and total print counter");
+    story.settled();
+    story.expect("!FF; ?RS");
+    story.rs(State::ready_to_print);
+    story.expect("?SM");
+    story.sm(0, 150, 0);
+    story.expect("?SM");
+    story.sm(0, 150, 0);
+    story.expect("?CC");
+    story.cc(950);
+    story.expect("settle the earlier run: printed none, in doubt none, unused 151-200 by mail status and total print "
+                 "counter; begin run, last printed before 150");
+}
+
+TEST(FeederEarlierRun, shouldNotFlushWhatIsPrintedInFull) {
+    Story story{quick_settings(), plan_with(earlier_run())};
+    story.identify();
+    story.locate(200, 1000);
+    story.expect("settle the earlier run: printed 101-200, in doubt none, unused none by mail status and total print "
+                 "counter; begin run, last printed before 200");
+}
+
+TEST(FeederEarlierRun, shouldNotFlushAnotherPrinterForTheEarlierRun) {
+    Story story{quick_settings(), plan_with(earlier_run())};
+    story.start();
+    story.rs(State::ready_to_print);
+    story.vs("S2");
+    story.jl();
+    story.locate(150, 950);
+    EXPECT_EQ(story.take().find("settle the earlier run: printed none, in doubt 101-200, unused none by no evidence; "
+                                "end: records_in_doubt"),
+              0U);
+}
+
+TEST(FeederEarlierRun, shouldFindRecordsThatSomebodyStartsBeforeTheFlush) {
+    Story story{quick_settings(), plan_with(earlier_run())};
+    story.identify();
+    story.locate(150, 950);
+    story.settled();
+    story.take();
+    story.rs(State::printing); // started at the panel before the flush came
+    story.expect("?SM");
+    story.sm(0, 152, 0);
+    story.sm(0, 152, 0);
+    story.cc(952);
+    EXPECT_EQ(story.phase(), Phase::halting);
+    story.rs(State::ready_to_print);
+    story.take();
+    story.locate(153, 953);
+    story.expect("settle the earlier run so far: printed 151-153 by mail status and total print counter");
+    story.clear_fifo(153, true, 953);
+    story.expect("settle the earlier run: printed none, in doubt none, unused 154-200 by mail status and total print "
+                 "counter; begin run, last printed before 153");
+}
+
+TEST(FeederEarlierRun, shouldKeepTheFirstLookWhenTheFlushMakesThePrinterForgetItsNumber) {
+    Story story{quick_settings(), plan_with(earlier_run())};
+    story.identify();
+    story.locate(150, 950);
+    story.take();
+    story.clear_fifo(0, true, 950);
+    story.expect("settle the earlier run: printed none, in doubt none, unused 151-200 by mail status and total print "
+                 "counter; begin run, last printed before 0");
+}
+
+TEST(FeederEarlierRun, shouldNotKeepTheFirstLookWhenTheCounterHasMovedSince) {
+    Story story{quick_settings(), plan_with(earlier_run())};
+    story.identify();
+    story.locate(150, 950);
+    story.take();
+    story.clear_fifo(0, true, 951);
+    EXPECT_EQ(story.take().find("settle the earlier run: printed none, in doubt 151-152, unused 153-200 by total"), 0U);
+}
+
+TEST(FeederEarlierRun, shouldLeaveTheRunOpenWhenTheFifoCannotBeFlushed) {
+    Story story{quick_settings(), plan_with(earlier_run())};
+    story.identify();
+    story.locate(150, 950);
+    story.settled();
+    story.take();
+    story.rs(State::ready_to_print);
+    story.sm(9, 150, 0);
+    story.sm(9, 150, 0);
+    story.expect("?SM; ?SM");
+    story.wait(milliseconds{20});
+    story.sm(9, 150, 0);
+    story.expect("?SM");
+    story.wait(seconds{2});
+    story.sm(9, 150, 0);
+    story.expect("?SM; end: fifo_not_flushed (ready for print start, error 0)");
 }
 
 TEST(FeederEarlierRun, shouldGiveTheEvidenceToTheLedger) {
@@ -32,75 +119,63 @@ TEST(FeederEarlierRun, shouldGiveTheEvidenceToTheLedger) {
 TEST(FeederEarlierRun, shouldSettleTheEarlierRunEvenWhenItMayNotStart) {
     Story story{quick_settings(), plan_with(earlier_run())};
     story.identify(State::ready);
-    story.locate(150, 950);
-    story.expect(
-        "settle the earlier run: printed 101-150, in doubt none, unused 151-200 by mail status and total print "
-        "counter");
-    story.settled(); // a single record would not show in the entries: nobody may print it now
-    story.expect("!FF; end: not_ready (ready for action, error 0)");
+    story.sm(9, 150, 200);
+    story.sm(9, 150, 200);
+    story.take();
+    story.cc(950);
+    story.expect("settle the earlier run so far: printed 101-150 by mail status and total print counter");
+    story.settled();
+    story.take();
+    story.rs(State::ready);
+    story.sm(0, 150, 0);
+    story.sm(0, 150, 0);
+    story.take();
+    story.cc(950);
+    story.expect("settle the earlier run: printed none, in doubt none, unused 151-200 by mail status and total print "
+                 "counter; end: not_ready (ready for action, error 0)");
 }
 
 TEST(FeederEarlierRun, shouldPrintNothingWhileRecordsAreInDoubt) {
     Story story{quick_settings(), plan_with(earlier_run())};
     story.identify();
     story.locate(150, 5000);
-    story.expect("settle the earlier run: printed none, in doubt 101-200, unused none by no evidence");
-    EXPECT_EQ(story.phase(), Phase::clearing);
-    story.settled();
-    story.expect("!FF; end: records_in_doubt (ready for print start, error 0)");
+    story.expect("settle the earlier run so far: printed none by no evidence");
+    story.clear_fifo(150, true, 5000);
+    story.expect("settle the earlier run: printed none, in doubt 101-200, unused none by no evidence; "
+                 "end: records_in_doubt (ready for print start, error 0)");
 }
 
-TEST(FeederEarlierRun, shouldFlushAtOnceWhenTheLedgerHasTheTruthAlready) {
-    Story story{quick_settings(), plan_with(earlier_run())};
-    story.identify();
-    story.locate(150, 950);
-    story.take();
-    story.settled();
-    story.expect("");
-    story.refused(OutcomeCode::nothing_to_print);
-    story.expect("!FF; end: nothing_to_print (ready for print start, error 0)");
-}
-
-TEST(FeederEarlierRun, shouldNotWaitForAFlushThatCannotBe) {
-    const auto reach_granting = [] {
+TEST(FeederEarlierRun, shouldLeaveTheRunOpenWhenTheLedgerOrTheLinkIsGone) {
+    const auto reach_recording = [](bool flush) {
         Story story{quick_settings(), plan_with(earlier_run())};
         story.identify();
         story.locate(150, 950);
+        if (flush) {
+            story.settled();
+        }
         story.take();
+        EXPECT_EQ(story.phase(), flush ? Phase::clearing : Phase::recording);
         return story;
     };
-    Story story = reach_granting();
-    story.link_lost();
-    story.expect("end: link_lost (ready for print start, error 0)");
-    story = reach_granting();
-    story.storage_failed();
-    story.expect("end: storage_failed (ready for print start, error 0)");
-    story = reach_granting();
-    story.stop();
-    story.expect("");
-    story.link_lost(); // while the ledger is awaited
-    story.expect("end: link_lost (ready for print start, error 0)");
-}
-
-TEST(FeederEarlierRun, shouldWaitForEverySettlementBeforeTheFlush) {
-    Story story{quick_settings(), plan_with(earlier_run())};
-    story.identify();
-    story.locate(150, 950);
-    story.granted();
-    story.take();
-    story.stop();
-    story.judge_unsettled(3, 150, true, 950);
-    story.take();
-    story.settled(); // that was the earlier run
-    story.expect("");
-    story.settled();
-    story.expect("!FF; end: stop_requested (ready for print start, error 0)");
+    for (const bool flush : {false, true}) {
+        Story story = reach_recording(flush);
+        story.link_lost();
+        story.expect("end: link_lost (ready for print start, error 0)");
+        story = reach_recording(flush);
+        story.storage_failed();
+        story.expect("end: storage_failed (ready for print start, error 0)");
+        story = reach_recording(flush);
+        story.stop();
+        story.expect("end: stop_requested (ready for print start, error 0)");
+    }
 }
 
 TEST(FeederEarlierRun, shouldGoOnWhenTheDoubtIsAboutAnotherJob) {
     Story story{quick_settings(), plan_with(earlier_run(), false)};
     story.identify();
     story.locate(150, 5000);
+    story.take();
+    story.clear_fifo(150, true, 5000);
     story.expect("settle the earlier run: printed none, in doubt 101-200, unused none by no evidence; "
                  "begin run, last printed before 150");
 }
@@ -128,7 +203,9 @@ TEST(FeederEarlierRun, shouldDoubtAPrintThatNeverFinishes) {
     story.sm(0, 150, 0, false);
     story.expect("?CC");
     story.cc(950);
-    EXPECT_EQ(story.take().find("settle the earlier run: printed 101-149, in doubt 150-150, unused 151-200"), 0U);
+    EXPECT_EQ(story.take().find("settle the earlier run so far: printed 101-149"), 0U);
+    story.clear_fifo(150, false, 950);
+    EXPECT_EQ(story.take().find("settle the earlier run: printed none, in doubt 150-150, unused 151-200"), 0U);
 }
 
 TEST(FeederEarlierRun, shouldHaltAPrinterThatPrintsTheEarlierRunAndFlushNothing) {
@@ -151,9 +228,10 @@ TEST(FeederEarlierRun, shouldHaltAPrinterThatPrintsTheEarlierRunAndFlushNothing)
     story.sm(0, 152, 0);
     story.expect("?SM; ?CC");
     story.cc(952);
-    story.expect(
-        "settle the earlier run: printed 101-152, in doubt none, unused 153-200 by mail status and total print "
-        "counter; begin run, last printed before 152");
+    story.expect("settle the earlier run so far: printed 101-152 by mail status and total print counter");
+    story.clear_fifo(152, true, 952);
+    story.expect("settle the earlier run: printed none, in doubt none, unused 153-200 by mail status and total print "
+                 "counter; begin run, last printed before 152");
 }
 
 TEST(FeederEarlierRun, shouldHaltAPrinterThatWasStartedAndHasNotPrintedYet) {
@@ -197,54 +275,12 @@ TEST(FeederEarlierRun, shouldGiveUpAPrinterThatDoesNotHalt) {
     story.expect("end: did_not_stop (printing, error 0)");
 }
 
-// Records of the earlier run may still lie in the FIFO of a printer that stands: somebody could start it by hand.
-
-TEST(FeederEarlierRun, shouldSettleLoadedRecordsOnlyWhenTheFlushComesNext) {
-    Story story{quick_settings(), plan_with(earlier_run())};
-    story.identify(State::ready_to_print, raw_error(5043));
-    story.sm(9, 150, 200);
-    story.sm(9, 150, 200);
-    story.take();
-    story.cc(950);
-    story.expect("notice: acknowledged 5043 (mailing buffer empty), error from RIP; !EQ; ?RS");
-    story.rs(State::ready_to_print);
-    story.expect("?SM"); // time has passed: where is it now?
-    story.sm(8, 151, 200);
-    story.sm(8, 151, 200);
-    story.expect("?SM; ?CC");
-    story.cc(951);
-    story.expect(
-        "settle the earlier run: printed 101-151, in doubt none, unused 152-200 by mail status and total print "
-        "counter; begin run, last printed before 151");
-}
-
-TEST(FeederEarlierRun, shouldLeaveLoadedRecordsOpenWhenItMayNotStart) {
-    Story story{quick_settings(), plan_with(earlier_run())};
-    story.identify(State::ready);
-    story.sm(9, 150, 200);
-    story.sm(9, 150, 200);
-    story.take();
-    story.cc(950);
-    story.expect("end: not_ready (ready for action, error 0)"); // the next start finds the truth
-}
-
-TEST(FeederEarlierRun, shouldFlushLoadedRecordsInDoubtOnceTheLedgerKnows) {
-    Story story{quick_settings(), plan_with(earlier_run())};
-    story.identify();
-    story.sm(9, 150, 200);
-    story.sm(9, 150, 200);
-    story.take();
-    story.cc(5000);
-    story.expect("settle the earlier run: printed none, in doubt 101-200, unused none by no evidence");
-    story.settled();
-    story.expect("!FF; end: records_in_doubt (ready for print start, error 0)");
-}
-
 TEST(FeederEarlierRun, shouldSettleTheEarlierRunOnlyOnce) {
     Story story{quick_settings(), plan_with(earlier_run())};
     story.identify(State::ready_to_print, raw_error(5043));
     story.locate(150, 950);
-    EXPECT_NE(story.take().find("settle the earlier run"), std::string::npos);
+    story.clear_fifo(150, true, 950, raw_error(5043));
+    EXPECT_NE(story.take().find("settle the earlier run: "), std::string::npos);
     story.rs(State::ready_to_print);
     story.expect("begin run, last printed before 150");
 }
@@ -259,15 +295,6 @@ TEST(FeederEarlierRun, shouldLookAgainWhenSomebodyStartsThePrinterMeanwhile) {
     story = reach(Phase::opening_nozzle);
     story.rs(State::printing);
     story.expect("?SM");
-}
-
-TEST(FeederEarlierRun, shouldFindRecordsThatWerePrintedByHandBeforeTheFlush) {
-    Story story = reach(Phase::flushing);
-    story.sm(1, 102, 0);
-    story.expect("!ST; ?RS");
-    story.judge(1, 102, true, 1002);
-    story.expect("settle: printed 101-102, in doubt none, unused 103-110 by mail status and total print counter; !FF; "
-                 "end: busy (ready for print start, error 0)");
 }
 
 } // namespace

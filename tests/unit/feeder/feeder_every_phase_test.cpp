@@ -23,7 +23,6 @@ void expect_in_every_phase(const std::map<Phase, std::string>& stories, const Ev
 }
 
 const std::string stop_and_ask = "!ST; ?RS";
-const std::string unused_all = "settle: printed none, in doubt none, unused none by nothing was issued; ";
 
 std::string ended(OutcomeCode code, const std::string& state = "ready for print start, error 0") {
     return "end: " + std::string{to_string(code)} + " (" + state + ")";
@@ -50,6 +49,7 @@ TEST(FeederEveryPhase, shouldStopOnRequestInEveryPhase) {
             {Phase::stopping, ""},
             {Phase::judging, ""},
             {Phase::finishing, ""},
+            {Phase::recording, ""},
             {Phase::clearing, ""},
             {Phase::ended, ""},
         },
@@ -69,9 +69,9 @@ TEST(FeederEveryPhase, shouldEndWhenTheLinkIsLostInEveryPhase) {
             {Phase::opening_nozzle, end("ready for action, error 0")},
             {Phase::acknowledging, end("ready for print start, error " + std::to_string(end_message))},
             {Phase::granting, ended(OutcomeCode::link_lost)},
-            {Phase::flushing, ended(OutcomeCode::link_lost)},                  // the flush may not have arrived
-            {Phase::setting_stop, unused_all + ended(OutcomeCode::link_lost)}, // granted, but nothing went out
-            {Phase::loading, unused_all + ended(OutcomeCode::link_lost)},
+            {Phase::flushing, ended(OutcomeCode::link_lost)},     // the flush may not have arrived
+            {Phase::setting_stop, ended(OutcomeCode::link_lost)}, // granted, but nothing went out
+            {Phase::loading, ended(OutcomeCode::link_lost)},
             {Phase::verifying, ended(OutcomeCode::link_lost)}, // the next start asks the printer about these
             {Phase::starting, ended(OutcomeCode::link_lost)},
             {Phase::printing, sent},
@@ -79,6 +79,7 @@ TEST(FeederEveryPhase, shouldEndWhenTheLinkIsLostInEveryPhase) {
             {Phase::judging, ended(OutcomeCode::link_lost)},
             {Phase::finishing,
              ended(OutcomeCode::finished, "ready for print start, error " + std::to_string(end_message))},
+            {Phase::recording, ended(OutcomeCode::link_lost)},
             {Phase::clearing, ended(OutcomeCode::link_lost)},
             {Phase::ended, ""},
         },
@@ -116,35 +117,23 @@ TEST(FeederEveryPhase, shouldStopWhenTheLedgerFailsInEveryPhase) {
             {Phase::starting, stop_and_ask},
             {Phase::printing, stop_and_ask},
             {Phase::stopping, ""},
-            {Phase::judging, ""},
+            {Phase::judging, ended(OutcomeCode::storage_failed)},
             {Phase::finishing, end("ready for print start, error " + std::to_string(end_message))},
-            {Phase::clearing, ended(OutcomeCode::storage_failed)}, // no flush: the truth is not in the ledger
+            {Phase::recording, ended(OutcomeCode::storage_failed)}, // no flush: the truth is not in the ledger
+            {Phase::clearing, ended(OutcomeCode::storage_failed)},
             {Phase::ended, ""},
         },
         [](Story& story) { story.storage_failed(); });
 }
 
 TEST(FeederEveryPhase, shouldNeitherFlushNorAcknowledgeWhatTheLedgerDoesNotKnow) {
-    Story story = reach(Phase::verifying);
-    story.storage_failed();
-    story.take();
-    story.judge(3, 77, true, 1000);
-    story.expect("settle: printed none, in doubt none, unused 101-104 by mail status; " +
-                 ended(OutcomeCode::storage_failed));
-
-    story = reach(Phase::stopping); // it fails on the way
-    story.storage_failed();
-    story.judge(0, 104, true, 1004, end_message);
-    story.expect("settle: printed 101-104, in doubt none, unused none by mail status and total print counter; " +
-                 ended(OutcomeCode::storage_failed, "ready for print start, error " + std::to_string(end_message)));
-
-    story = reach(Phase::printing);
-    story.sm(1, 104, 110);
-    story.sm(1, 108, 110);
-    story.storage_failed();
-    story.judge(0, 110, true, 1010, end_message);
-    EXPECT_EQ(story.take().find("!EQ"), std::string::npos) << "all printed, but nobody could write it down";
-    EXPECT_EQ(story.phase(), Phase::ended);
+    for (const Phase phase : {Phase::verifying, Phase::printing, Phase::stopping}) {
+        Story story = reach(phase);
+        story.storage_failed();
+        story.take();
+        story.rs(State::ready_to_print, end_message);
+        story.expect(ended(OutcomeCode::storage_failed, "ready for print start, error " + std::to_string(end_message)));
+    }
 }
 
 TEST(FeederEveryPhase, shouldEndWhenThePrinterDoesNotSayItsStateOrPlaceInEveryPhase) {
@@ -161,8 +150,8 @@ TEST(FeederEveryPhase, shouldEndWhenThePrinterDoesNotSayItsStateOrPlaceInEveryPh
                 {Phase::acknowledging, end("ready for print start, error " + std::to_string(end_message))},
                 {Phase::granting, ended(OutcomeCode::no_answer)},
                 {Phase::flushing, ended(OutcomeCode::no_answer)},
-                {Phase::setting_stop, unused_all + ended(OutcomeCode::no_answer)},
-                {Phase::loading, unused_all + ended(OutcomeCode::no_answer)},
+                {Phase::setting_stop, ended(OutcomeCode::no_answer)},
+                {Phase::loading, ended(OutcomeCode::no_answer)},
                 {Phase::verifying, "!ST; " + ended(OutcomeCode::no_answer)}, // it may still listen
                 {Phase::starting, "!ST; " + ended(OutcomeCode::no_answer)},
                 {Phase::printing, "!ST; " + end("printing, error 0")},
@@ -170,6 +159,7 @@ TEST(FeederEveryPhase, shouldEndWhenThePrinterDoesNotSayItsStateOrPlaceInEveryPh
                 {Phase::judging, "!ST; " + ended(OutcomeCode::no_answer)},
                 {Phase::finishing,
                  ended(OutcomeCode::finished, "ready for print start, error " + std::to_string(end_message))},
+                {Phase::recording, "!ST; " + ended(OutcomeCode::no_answer)},
                 {Phase::clearing, "!ST; " + ended(OutcomeCode::no_answer)},
                 {Phase::ended, ""},
             },
@@ -192,8 +182,7 @@ TEST(FeederEveryPhase, shouldGoOnWithoutIdentityOrCounterInEveryPhase) {
     story.sm(0, 104, 0);
     story.take();
     story.no_answer(Parameter::CC);
-    story.settled();
-    story.expect("settle: printed 101-104, in doubt none, unused none by mail status; !FF; " +
+    story.expect("settle this run: printed 101-104, in doubt none, unused none by mail status; " +
                  ended(OutcomeCode::stop_requested));
 }
 
@@ -217,7 +206,8 @@ TEST(FeederEveryPhase, shouldKeepTheDeadlineOfEveryPhase) {
         {Phase::locating, {seconds{2}, ""}},
         {Phase::judging, {seconds{2}, ""}},
         {Phase::taking_over, {seconds{2}, ""}},
-        {Phase::clearing, {seconds{10}, ended(OutcomeCode::stop_requested)}},
+        {Phase::recording, {seconds{10}, ended(OutcomeCode::storage_failed)}},
+        {Phase::clearing, {seconds{2}, ""}},
         {Phase::finishing,
          {seconds{2}, ended(OutcomeCode::finished, "ready for print start, error " + std::to_string(end_message))}},
     };

@@ -53,6 +53,7 @@ private:
     void check_one(const Command& command) {
         if (command.what == protocol::Action::flush_fifo) {
             ASSERT_TRUE(granted_ || settled_) << "flushed before the ledger knows the truth";
+            flushed_ = true;
         }
     }
     void check_one(const SetStopAt& stop) { ASSERT_EQ(stop.number, range_.last()); }
@@ -67,7 +68,7 @@ private:
         ASSERT_EQ(sent_, range_.last());
     }
     void check_one(const Settle& settle) {
-        const RecordNumber before = settle.earlier_run ? plan_.open->printed_through : confirmed_;
+        RecordNumber& before = settle.earlier_run ? plan_.open->printed_through : confirmed_;
         std::uint32_t next = before.value() + 1;
         for (const RecordRange& range : {settle.verdict.printed, settle.verdict.in_doubt, settle.verdict.unused}) {
             if (!range.empty()) {
@@ -75,8 +76,17 @@ private:
                 next = range.last().value() + 1;
             }
         }
-        ASSERT_EQ(settles_[settle.earlier_run ? 1 : 0]++, 0) << "settled twice";
         ASSERT_EQ(granted_, !settle.earlier_run);
+        ASSERT_EQ(settles_[settle.earlier_run ? 1 : 0], 0) << "settled already";
+        if (settle.provisional) {
+            flushed_ = false;
+            if (!settle.verdict.printed.empty()) {
+                before = settle.verdict.printed.last();
+            }
+        } else {
+            ++settles_[settle.earlier_run ? 1 : 0];
+            ASSERT_TRUE(flushed_ || settle.verdict.unused.empty()) << "unused, but perhaps still in the FIFO";
+        }
     }
     void check_one(const BeginRun&) { ASSERT_FALSE(granted_); }
     void check_one(const AdoptRun& adopt) {
@@ -108,6 +118,7 @@ private:
     FeederPlan plan_;
     bool granted_ = false;
     bool settled_ = false;
+    bool flushed_ = false; ///< since the last look
     bool ended_ = false;
     int ends_ = 0;
     std::array<int, 2> settles_{};
@@ -278,7 +289,7 @@ private:
         }
         case 7:
             rules_.settled();
-            tell([this](Actions& out) { feeder_.on_settled(out); });
+            tell([this](Actions& out) { feeder_.on_settled(now_, out); });
             return true;
         case 8:
             if (draw(10) == 0) {

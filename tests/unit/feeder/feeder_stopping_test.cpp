@@ -34,10 +34,10 @@ TEST(FeederStopping, shouldFindTheTruthAfterAStopOnRequest) {
     story.sm(0, 104, 0);
     story.expect("?CC");
     story.cc(1004);
-    story.settled();
-    story.expect(
-        "settle: printed 103-104, in doubt none, unused 105-106 by mail status and total print counter; !FF; " +
-        ended(OutcomeCode::stop_requested));
+    story.clear_fifo(104, true, 1004);
+    story.expect("settle this run so far: printed 103-104 by mail status and total print counter; settle this run: "
+                 "printed none, in doubt none, unused 105-106 by mail status and total print counter; " +
+                 ended(OutcomeCode::stop_requested));
 }
 
 TEST(FeederStopping, shouldGiveAllEvidenceWithTheVerdict) {
@@ -71,7 +71,7 @@ TEST(FeederStopping, shouldJudgeOnlyByAnswersFromBehindTheStop) {
     story.sm(0, 104, 0);
     story.expect("?CC");
     story.cc(1004);
-    EXPECT_EQ(story.take().find("settle: printed 101-104, in doubt none, unused none"), 0U);
+    EXPECT_EQ(story.take().find("settle this run: printed 101-104, in doubt none, unused none"), 0U);
 }
 
 TEST(FeederStopping, shouldDoubtTheRecordWhosePrintWasBrokenOff) {
@@ -89,10 +89,10 @@ TEST(FeederStopping, shouldDoubtTheRecordWhosePrintWasBrokenOff) {
     story.sm(0, 102, 0, false);
     story.expect("?CC");
     story.cc(1002);
-    story.settled();
-    story.expect(
-        "settle: printed 101-101, in doubt 102-102, unused 103-104 by mail status and total print counter; !FF; " +
-        ended(OutcomeCode::stop_requested));
+    story.clear_fifo(102, false, 1002);
+    story.expect("settle this run so far: printed 101-101 by mail status and total print counter; settle this run: "
+                 "printed none, in doubt 102-102, unused 103-104 by mail status and total print counter; " +
+                 ended(OutcomeCode::stop_requested));
 }
 
 TEST(FeederStopping, shouldNoticeAStopAtThePrinter) {
@@ -100,9 +100,9 @@ TEST(FeederStopping, shouldNoticeAStopAtThePrinter) {
     story.rs(State::ready_to_print);
     story.expect("?RS");
     story.judge(0, 102, true, 1002);
-    story.expect(
-        "settle: printed 101-102, in doubt none, unused 103-104 by mail status and total print counter; !FF; " +
-        ended(OutcomeCode::stopped_at_printer));
+    story.expect("settle this run so far: printed 101-102 by mail status and total print counter; settle this run: "
+                 "printed none, in doubt none, unused 103-104 by mail status and total print counter; " +
+                 ended(OutcomeCode::stopped_at_printer));
 }
 
 TEST(FeederStopping, shouldStopForAnErrorOfThePrinter) {
@@ -119,7 +119,7 @@ TEST(FeederStopping, shouldReportTheErrorThatStoppedThePrinter) {
         story.rs(State::ready_to_print, raw_error(code));
         story.judge(0, 104, true, 1004, raw_error(code));
         story.expect(
-            "settle: printed 101-104, in doubt none, unused none by mail status and total print counter; !FF; " +
+            "settle this run: printed 101-104, in doubt none, unused none by mail status and total print counter; " +
             ended(OutcomeCode::printer_error, "ready for print start, error " + std::to_string(raw_error(code))));
     }
 }
@@ -128,9 +128,9 @@ TEST(FeederStopping, shouldReportAnEndMessageBeforeTheEndAsAnError) {
     Story story = reach(Phase::printing);
     story.rs(State::ready_to_print, end_message);
     story.judge(0, 103, true, 1003, end_message);
-    story.expect(
-        "settle: printed 101-103, in doubt none, unused 104-104 by mail status and total print counter; !FF; " +
-        ended(OutcomeCode::printer_error, "ready for print start, error " + std::to_string(end_message)));
+    story.expect("settle this run so far: printed 101-103 by mail status and total print counter; settle this run: "
+                 "printed none, in doubt none, unused 104-104 by mail status and total print counter; " +
+                 ended(OutcomeCode::printer_error, "ready for print start, error " + std::to_string(end_message)));
 }
 
 TEST(FeederStopping, shouldNotTakeAWarningOfBeforeForTheCause) {
@@ -146,11 +146,9 @@ TEST(FeederStopping, shouldReportAnOpenCover) {
     Story story = reach(Phase::printing);
     story.rs(State::ready_to_print, 0, true);
     story.rs(State::ready_to_print, 0, true);
-    story.sm(0, 102, 0);
-    story.sm(0, 102, 0);
-    story.take();
+    story.say_where(0, 102);
     story.cc(1002);
-    story.settled();
+    story.clear_fifo(102, true, 1002, 0, true);
     EXPECT_NE(story.take().find("end: cover_open"), std::string::npos);
 }
 
@@ -164,9 +162,10 @@ TEST(FeederStopping, shouldStopWhenThePrinterHasLostItsMemory) {
         story.judge(0, back_to, true, 1003);
         const auto& settle = std::get<Settle>(story.actions[0]);
         EXPECT_FALSE(settle.evidence.uninterrupted);
-        story.expect((back_to == 0
-                          ? "settle: printed none, in doubt 103-104, unused 105-106 by total print counter; !FF; "
-                          : "settle: printed none, in doubt 103-106, unused none by no evidence; !FF; ") +
+        story.expect((back_to == 0 ? "settle this run so far: printed none by total print counter; settle this run: "
+                                     "printed none, in doubt 103-104, unused 105-106 by total print counter; "
+                                   : "settle this run so far: printed none by no evidence; settle this run: printed "
+                                     "none, in doubt 103-106, unused none by no evidence; ") +
                      ended(OutcomeCode::printer_restarted));
     }
 }
@@ -195,22 +194,62 @@ TEST(FeederStopping, shouldStopAgainWhenSomebodyStartsThePrinterWhileItIsJudged)
     story.judge(0, 103, true, 1002);
     const auto& settle = std::get<Settle>(story.actions[0]);
     EXPECT_TRUE(settle.evidence.restarted);
-    story.expect("settle: printed none, in doubt 101-104, unused none by no evidence; !FF; " +
+    story.expect("settle this run so far: printed none by no evidence; settle this run: printed none, in doubt "
+                 "101-104, unused none by no evidence; " +
                  ended(OutcomeCode::stop_requested));
 }
 
-TEST(FeederStopping, shouldFlushWhatWasNeverStartedOnlyWhenTheLedgerKnows) {
-    Story story = reach(Phase::clearing);
+TEST(FeederStopping, shouldFlushOnlyWhenTheLedgerKnowsAndLookOnceMoreBehindTheFlush) {
+    Story story = reach(Phase::recording);
     story.rs(State::ready_to_print);
     story.sm(3, 77, 0);
     story.expect("");
     story.settled();
-    story.expect("!FF; " + ended(OutcomeCode::stop_requested));
+    story.expect("!FF; ?RS");
+    story.rs(State::ready_to_print);
+    story.expect("?SM");
+    story.sm(3, 77, 0); // may be from before the flush
+    story.expect("?SM");
+    story.sm(0, 77, 0);
+    story.expect("?CC");
+    story.cc(1000);
+    story.expect("settle this run: printed none, in doubt none, unused 101-104 by mail status; " +
+                 ended(OutcomeCode::stop_requested));
+}
+
+TEST(FeederStopping, shouldFindWhatSomebodyPrintsBeforeTheFlush) {
+    Story story = reach(Phase::clearing);
+    story.rs(State::printing);
+    story.expect("!ST; ?RS");
+    story.judge(0, 102, true, 1002);
+    story.expect(
+        "settle this run so far: printed 101-102 by mail status and total print counter; "
+        "settle this run: printed none, in doubt none, unused 103-104 by mail status and total print counter; " +
+        ended(OutcomeCode::stop_requested));
+
+    story = reach(Phase::clearing); // started, and run empty, before anybody asked
+    story.rs(State::ready_to_print, raw_error(5043));
+    story.say_where(0, 104);
+    story.cc(1004);
+    story.expect(
+        "settle this run: printed 101-104, in doubt none, unused none by mail status and total print counter; " +
+        ended(OutcomeCode::stop_requested, "ready for print start, error " + std::to_string(raw_error(5043))));
+}
+
+TEST(FeederStopping, shouldLeaveRecordsOpenThatCannotBeFlushed) {
+    Story story = reach(Phase::clearing);
+    story.rs(State::ready_to_print);
+    story.sm(3, 77, 0);
+    story.sm(3, 77, 0);
+    story.wait(seconds{2});
+    story.take();
+    story.sm(3, 77, 0);
+    story.expect(ended(OutcomeCode::fifo_not_flushed));
 }
 
 TEST(FeederStopping, shouldTakeTheLedgersWordOnlyWhereItIsAwaited) {
     for (const Phase phase : all_phases) {
-        if (phase != Phase::clearing) {
+        if (phase != Phase::recording) {
             Story story = reach(phase);
             story.settled();
             story.expect("");
@@ -225,7 +264,7 @@ TEST(FeederStopping, shouldFinishWhenAStopComesTooLate) {
     story.sm(1, 108, 110);
     story.stop();
     story.judge(0, 110, true, 1010, end_message);
-    story.expect("settle: printed 109-110, in doubt none, unused none by end message 1223; !EQ; ?RS");
+    story.expect("settle this run: printed 109-110, in doubt none, unused none by end message 1223; !EQ; ?RS");
     story.rs(State::ready_to_print);
     story.expect(ended(OutcomeCode::finished));
 }
@@ -248,7 +287,7 @@ TEST(FeederStopping, shouldKnowTheEndMessageWithBit24) {
     story.take();
     story.rs(State::ready_to_print, odd);
     story.judge(0, 110, true, 1010, odd);
-    story.expect("settle: printed 109-110, in doubt none, unused none by end message 1223; !EQ; ?RS");
+    story.expect("settle this run: printed 109-110, in doubt none, unused none by end message 1223; !EQ; ?RS");
 }
 
 TEST(FeederStopping, shouldFinishOverAnUnderstoodErrorWhenAllIsPrinted) {
@@ -257,7 +296,20 @@ TEST(FeederStopping, shouldFinishOverAnUnderstoodErrorWhenAllIsPrinted) {
     story.sm(1, 108, 110);
     story.rs(State::ready_to_print, raw_error(5043));
     story.judge(0, 110, true, 1010, raw_error(5043));
-    EXPECT_NE(story.take().find("end: finished"), std::string::npos);
+    EXPECT_NE(story.take().find("; !EQ; ?RS"), std::string::npos);
+    story.rs(State::ready_to_print);
+    story.expect(ended(OutcomeCode::finished));
+}
+
+TEST(FeederStopping, shouldLeaveAnErrorAloneThatIsNotOfMailing) {
+    Story story = reach(Phase::printing);
+    story.sm(1, 104, 110);
+    story.sm(1, 108, 110);
+    story.rs(State::ready_to_print, raw_error(4711));
+    story.judge(0, 110, true, 1010, raw_error(4711));
+    const std::string told = story.take();
+    EXPECT_EQ(told.find("!EQ"), std::string::npos);
+    EXPECT_NE(told.find("end: finished"), std::string::npos);
 }
 
 } // namespace

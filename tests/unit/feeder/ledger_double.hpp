@@ -72,11 +72,16 @@ public:
         issued_ = RecordNumber{std::max(issued_.value(), through)};
     }
 
-    void settle(const Verdict& verdict) {
-        set(verdict.printed, Fate::printed);
-        set(verdict.in_doubt, Fate::in_doubt);
-        std::replace(fates_.begin(), fates_.end(), Fate::open, Fate::unused); // issued, but never sent
+    void settle(const Settle& settle) {
+        set(settle.verdict.printed, Fate::printed);
+        set(settle.verdict.in_doubt, Fate::in_doubt);
+        if (!settle.provisional) {
+            forget_open(); // issued, but never sent
+        }
     }
+
+    /// The end of a run that has sent nothing.
+    void forget_open() { std::replace(fates_.begin(), fates_.end(), Fate::open, Fate::unused); }
 
 private:
     using Place = std::vector<Fate>::const_iterator;

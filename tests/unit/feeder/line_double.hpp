@@ -342,8 +342,8 @@ private:
         } else if (const auto* printed = std::get_if<ConfirmPrinted>(&action)) {
             ledger_.confirm(printed->through.value());
         } else if (const auto* settle = std::get_if<Settle>(&action)) {
-            ledger_.settle(settle->verdict);
-            tell([this](Actions& out) { feeder_->on_settled(out); });
+            ledger_.settle(*settle);
+            tell([this](Actions& out) { feeder_->on_settled(now_, out); });
         }
     }
 

@@ -118,5 +118,16 @@ TEST(PacingDeathTest, shouldRefuseSettingsWithoutABeat) {
     EXPECT_DEATH(Pacing(PacingSettings{.polls_per_buffer = 0}), "polls_per_buffer");
 }
 
+TEST(Pacing, shouldNoticeALeap) {
+    const auto at = [](int ms) { return Instant{std::chrono::milliseconds{ms}}; };
+    Pacing pacing{PacingSettings{}};
+    pacing.restart(at(0));
+    EXPECT_FALSE(pacing.leaps(RecordCount{48}, at(10))) << "a standing line may start at any rate";
+    EXPECT_TRUE(pacing.leaps(RecordCount{49}, at(10)));
+    pacing.printed(RecordCount{3000}, at(1000));
+    EXPECT_FALSE(pacing.leaps(RecordCount{3608}, at(1100))) << "twice as fast for a while";
+    EXPECT_TRUE(pacing.leaps(RecordCount{3609}, at(1100)));
+}
+
 } // namespace
 } // namespace linefeed::feeder

@@ -231,11 +231,12 @@ TEST(Reconcile, shouldAskTheCounterAboutANumberLeftOverWithinTheRun) {
 
 // No number: the printer lost its memory, or printed nothing since.
 
-TEST(Reconcile, shouldGoByTheCounterAfterAPowerCycleAndDoubtThePrintInWhichItCame) {
-    // Whether a print counts as it begins or as it ends is not known: it is the last one counted or the next.
+TEST(Reconcile, shouldBoundTheDoubtByTheCounterAfterAPowerCycle) {
+    // Somebody else may have used the printer since, so the counter proves no print; and the print in which the power
+    // failed may not be counted.
     for (const bool finished : {false, true}) {
         EXPECT_EQ(verdict(run_with(110), says(0, 1015, finished)),
-                  "printed 111-114, in doubt 115-116, unused 117-120 by total print counter");
+                  "printed none, in doubt 111-116, unused 117-120 by total print counter");
     }
     EXPECT_EQ(verdict(run_with(110), says(0, 1011)),
               "printed none, in doubt 111-112, unused 113-120 by total print counter");
@@ -243,17 +244,17 @@ TEST(Reconcile, shouldGoByTheCounterAfterAPowerCycleAndDoubtThePrintInWhichItCam
               "printed none, in doubt 111-111, unused 112-120 by total print counter")
         << "110 is confirmed, and finished";
     EXPECT_EQ(verdict(run_with(110), says(0, 1019)),
-              "printed 111-118, in doubt 119-120, unused none by total print counter");
+              "printed none, in doubt 111-120, unused none by total print counter");
     EXPECT_EQ(verdict(run_with(110), says(0, 1020)),
-              "printed 111-119, in doubt 120-120, unused none by total print counter");
+              "printed none, in doubt 111-120, unused none by total print counter");
     EXPECT_EQ(verdict(run_with(119), says(0, 1020)),
               "printed none, in doubt 120-120, unused none by total print counter");
     EXPECT_EQ(verdict(run_with(100), says(0, 1003)),
-              "printed 101-102, in doubt 103-104, unused 105-120 by total print counter");
+              "printed none, in doubt 101-104, unused 105-120 by total print counter");
     EXPECT_EQ(verdict(run_with(100), says(0, 1000)),
               "printed none, in doubt 101-101, unused 102-120 by total print counter");
     EXPECT_EQ(verdict(run_with(110), uninterrupted(says(0, 1015))),
-              "printed 111-114, in doubt 115-116, unused 117-120 by total print counter");
+              "printed none, in doubt 111-116, unused 117-120 by total print counter");
 }
 
 TEST(Reconcile, shouldDoubtEverythingAfterAPowerCycleWhenTheCounterCannotBe) {
@@ -269,7 +270,7 @@ TEST(Reconcile, shouldKnowAPrinterThatHadNoNumberBeforeEither) {
     OpenRun run = run_with(100);
     run.last_printed_before = no(0);
     EXPECT_EQ(verdict(run, says(0, 1000)), nothing_printed_by + "mail status and total print counter");
-    EXPECT_EQ(verdict(run, says(0, 1003)), "printed 101-102, in doubt 103-104, unused 105-120 by total print counter");
+    EXPECT_EQ(verdict(run, says(0, 1003)), "printed none, in doubt 101-104, unused 105-120 by total print counter");
     EXPECT_EQ(verdict(run, says(0, 1021)), doubt_from_101);
     EXPECT_EQ(verdict(run, says(0, std::nullopt)), doubt_from_101);
 }
@@ -286,7 +287,7 @@ TEST(Reconcile, shouldCountAcrossTheWrapOfTheCounter) {
     run.total_before = 4294967290U;
     EXPECT_EQ(verdict(run, says(115, 9)),
               "printed 101-115, in doubt none, unused 116-120 by mail status and total print counter");
-    EXPECT_EQ(verdict(run, says(0, 9)), "printed 101-114, in doubt 115-116, unused 117-120 by total print counter");
+    EXPECT_EQ(verdict(run, says(0, 9)), "printed none, in doubt 101-116, unused 117-120 by total print counter");
     EXPECT_EQ(verdict(run, says(115, 10)), doubt_from_101);
 }
 
@@ -298,10 +299,9 @@ TEST(Reconcile, shouldWorkAtTheEndsOf32Bits) {
     EXPECT_EQ(verdict(upper, says(max, 3, false)), "printed 4294967293-4294967294, in doubt 4294967295-4294967295, "
                                                    "unused none by mail status and total print counter");
     EXPECT_EQ(verdict(upper, says(0, 3)),
-              "printed 4294967293-4294967294, in doubt 4294967295-4294967295, unused none by total print counter");
+              "printed none, in doubt 4294967293-4294967295, unused none by total print counter");
     const OpenRun whole{no(1), no(0), no(max), "", 5, no(0)};
-    EXPECT_EQ(verdict(whole, says(0, 4)),
-              "printed 1-4294967294, in doubt 4294967295-4294967295, unused none by total print counter");
+    EXPECT_EQ(verdict(whole, says(0, 4)), "printed none, in doubt 1-4294967295, unused none by total print counter");
     EXPECT_EQ(verdict(whole, says(max, 4)),
               "printed 1-4294967295, in doubt none, unused none by mail status and total print counter");
     const OpenRun lower{no(1), no(0), no(3), "", 5, no(9)};
@@ -349,7 +349,7 @@ TEST(Reconcile, shouldCoverExactlyWhatWasIssuedWhateverTheEvidence) {
             ASSERT_LE(verdict.in_doubt.count().value(), evidence.mail.last_print_finished ? 0U : 1U);
             break;
         case Basis::counter:
-            ASSERT_LE(verdict.in_doubt.count().value(), 2U);
+            ASSERT_TRUE(verdict.printed.empty() && !verdict.in_doubt.empty());
             break;
         }
         ++cases;

@@ -63,7 +63,9 @@ public:
             {.machine = machine, .error = {error}, .cover_open = cover_open, .job_changed = std::nullopt}, now,
             actions);
     }
+    /// A moment after what was before. Nothing is woken by that.
     void sm(std::uint32_t entries, std::uint32_t last_printed, std::uint32_t stop_at, bool finished = true) {
+        now += answer_time;
         feeder.on_mail_status(
             {reported_depth, entries, RecordNumber{last_printed}, RecordNumber{stop_at}, finished, {}}, now, actions);
     }
@@ -85,7 +87,7 @@ public:
     void refused(OutcomeCode why) { feeder.on_refused(why, actions); }
     void durable(std::uint32_t through) { feeder.on_durable(RecordNumber{through}, now, actions); }
     void supplied(std::uint32_t through) { feeder.on_supplied(RecordNumber{through}, now, actions); }
-    void settled() { feeder.on_settled(actions); }
+    void settled() { feeder.on_settled(now, actions); }
     void storage_failed() { feeder.on_storage_failed(now, actions); }
     void stop() { feeder.request_stop(now, actions); }
     void wait(Duration time) {
@@ -134,6 +136,7 @@ public:
         flush_and_set_stop();
         supplied(last);
         sm(3, 77, last);
+        wait(FeederSettings{}.fill_lead);
         actions.clear();
     }
     /// Up to the first answer while printing.
@@ -157,23 +160,52 @@ public:
         sm(0, last, 0);
         cc(1010);
     }
-    /// After a stop: the printer stands, and says where; the ledger takes it down.
+    /// After a stop: the printer stands, and says where; the ledger takes it down, and the last look is as the first.
     void judge(std::uint32_t entries, std::uint32_t last_printed, bool finished = true,
                std::optional<std::uint32_t> total = std::nullopt, std::int32_t error = 0) {
         judge_unsettled(entries, last_printed, finished, total, error);
+        if (phase() == Phase::recording) {
+            clear_fifo(last_printed, finished, total, error);
+        }
+    }
+    /// The printed records are in the ledger: the FIFO is flushed, and the printer asked once more. Leaves the flush
+    /// and the inquiries out of the actions.
+    void clear_fifo(std::uint32_t last_printed, bool finished = true, std::optional<std::uint32_t> total = std::nullopt,
+                    std::int32_t error = 0, bool cover_open = false) {
+        const Actions before = actions;
+        actions.clear();
         settled();
+        expect("!FF; ?RS");
+        rs(State::ready_to_print, error, cover_open);
+        say_where(0, last_printed, finished);
+        cc(total);
+        const Actions behind = actions;
+        actions = before;
+        for (const Action& action : behind) {
+            actions.push_back(action);
+        }
     }
     void judge_unsettled(std::uint32_t entries, std::uint32_t last_printed, bool finished = true,
                          std::optional<std::uint32_t> total = std::nullopt, std::int32_t error = 0) {
         rs(State::ready_to_print, error);
         rs(State::ready_to_print, error);
-        sm(entries, last_printed, 0, finished);
-        sm(entries, last_printed, 0, finished);
-        actions.clear();
+        say_where(entries, last_printed, finished);
         cc(total);
+    }
+    /// Answers `?SM` until `?CC` is asked, and forgets the actions.
+    void say_where(std::uint32_t entries, std::uint32_t last_printed, bool finished = true) {
+        actions.clear();
+        for (int answers = 0; answers < 8 && text(actions).find("?CC") == std::string::npos; ++answers) {
+            sm(entries, last_printed, 0, finished);
+            if (!finished) {
+                wait(std::chrono::seconds{2}); // its print will not finish any more
+            }
+        }
+        actions.clear();
     }
 
     Instant now{std::chrono::seconds{1}};
+    Duration answer_time = std::chrono::milliseconds{5};
     Actions actions;
     std::uint32_t reported_depth = depth;
     Feeder feeder;
@@ -267,10 +299,14 @@ inline Story reach(Phase phase) {
     case Phase::finishing:
         story.print_all();
         break;
+    case Phase::recording:
     case Phase::clearing:
         story = reach(Phase::verifying);
         story.stop();
         story.judge_unsettled(3, 77, true, 1000);
+        if (phase == Phase::clearing) {
+            story.settled();
+        }
         break;
     case Phase::ended:
         story.start();
@@ -286,7 +322,7 @@ inline constexpr std::array all_phases{
     Phase::idle,           Phase::identifying,   Phase::locating, Phase::taking_over, Phase::halting,
     Phase::opening_nozzle, Phase::acknowledging, Phase::granting, Phase::flushing,    Phase::setting_stop,
     Phase::loading,        Phase::verifying,     Phase::starting, Phase::printing,    Phase::stopping,
-    Phase::judging,        Phase::finishing,     Phase::clearing, Phase::ended,
+    Phase::judging,        Phase::recording,     Phase::clearing, Phase::finishing,   Phase::ended,
 };
 
 } // namespace linefeed::feeder

@@ -102,7 +102,9 @@ public:
             page(*each);
         }
         const std::uint64_t loaded = session.feeder().refill().level().value() - 1;
-        receive("^0=SM256\t" + std::to_string(loaded) + "\t0\t" + last + "\t1\r^0=RS2\t6\t0\t0\t0\t0\r");
+        receive("^0=SM256\t" + std::to_string(loaded) + "\t0\t" + last + "\t1\r");
+        wake(); // !GO comes a moment later
+        receive("^0=RS2\t6\t0\t0\t0\t0\r");
         ASSERT_EQ(session.feeder().phase(), feeder::Phase::printing);
         sent_.clear();
         story_.clear();

@@ -183,6 +183,8 @@ void play(ManualSession& manual) {
     ASSERT_EQ(first_fill.substr(first_fill.size() - 31), "^0=MR22373\tMiddelb\xFCscher\n^0?SM\n");
     ASSERT_EQ(host.story(), "intent through 23141");
     manual.answer({mail(255, 0)});
+    ASSERT_EQ(manual.sent(), "");
+    host.wake(); // a moment later, since the first product may come at once
     ASSERT_EQ(manual.sent(), "^0!GO\n^0?RS\n");
     manual.answer({"=RS2\t6\t0\t0\t9\t0"});
     ASSERT_EQ(manual.sent(), "^0?SM\n");
@@ -235,7 +237,7 @@ void play(ManualSession& manual) {
     ASSERT_EQ(manual.sent(), "^0?CC\n");
     manual.answer({"=CC77888\t0\t78883"});
     ASSERT_EQ(manual.sent(), "^0!EQ\n^0?RS\n");
-    ASSERT_EQ(host.story(), "settle: printed 99997-100000, in doubt none, unused none by end message 1223");
+    ASSERT_EQ(host.story(), "settle this run: printed 99997-100000, in doubt none, unused none by end message 1223");
     manual.answer({"=RS2\t5\t0\t0\t9\t0"});
     ASSERT_EQ(manual.sent(), "");
     ASSERT_TRUE(host.closed);
