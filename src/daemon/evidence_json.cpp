@@ -1,82 +1,140 @@
 #include "daemon/evidence_json.hpp"
 
+#include "spool/json_text.hpp"
+
 #include <nlohmann/json.hpp>
+
+#include <utility>
 
 namespace linefeed::daemon {
 
+using spool::JsonObject;
+
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = nlohmann::json;
 
-Json mail_array(const protocol::MailStatus& mail) {
-    return Json::array(
-        {mail.depth, mail.entries, mail.last_printed.value(), mail.stop_at.value(), mail.last_print_finished ? 1 : 0});
+std::string mail_array(const protocol::MailStatus& mail) {
+    return spool::json_array({std::to_string(mail.depth), std::to_string(mail.entries),
+                              std::to_string(mail.last_printed.value()), std::to_string(mail.stop_at.value()),
+                              mail.last_print_finished ? "1" : "0"});
 }
 
-/// The printer's strings may hold any bytes.
-std::string dump(const Json& json) {
-    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
+/// Takes a run start as it is parsed, since a parsed object ends the process when memory runs out (json_text.hpp).
+/// Values of another type than ours are taken for absent.
+class RunStartReader : public nlohmann::json_sax<Json> {
+public:
+    [[nodiscard]] std::optional<RunStart> finish() && {
+        return has_printer_ ? std::optional{std::move(start_)} : std::nullopt;
+    }
+
+    bool key(std::string& name) override {
+        key_ = depth_ == 1 ? name : "";
+        return true;
+    }
+    bool string(std::string& value) override {
+        if (key_ == "printer") {
+            start_.printer = value;
+            has_printer_ = true;
+        } else if (key_ == "serial_number") {
+            start_.serial_number = value;
+        }
+        return scalar();
+    }
+    bool number_unsigned(std::uint64_t value) override {
+        if (key_ == "total_before") {
+            start_.total_before = static_cast<std::uint32_t>(value);
+        } else if (key_ == "last_printed_before") {
+            start_.last_printed_before = RecordNumber{static_cast<std::uint32_t>(value)};
+        }
+        return scalar();
+    }
+    bool number_integer(std::int64_t /*value*/) override { return scalar(); }
+    bool number_float(double /*value*/, const std::string& /*text*/) override { return scalar(); }
+    bool null() override { return scalar(); }
+    bool boolean(bool /*value*/) override { return scalar(); }
+    bool binary(Json::binary_t& /*value*/) override { return scalar(); }
+    bool start_object(std::size_t /*elements*/) override { return open(); }
+    bool end_object() override { return close(); }
+    bool start_array(std::size_t /*elements*/) override { return open(); }
+    bool end_array() override { return close(); }
+    bool parse_error(std::size_t /*place*/, const std::string& /*token*/, const Json::exception& /*why*/) override {
+        return false;
+    }
+
+private:
+    bool scalar() {
+        key_.clear();
+        return true;
+    }
+    bool open() {
+        ++depth_;
+        return scalar();
+    }
+    bool close() {
+        --depth_;
+        return true;
+    }
+
+    RunStart start_;
+    std::string key_; ///< of the next value, in the outermost object only
+    int depth_ = 0;
+    bool has_printer_ = false;
+};
 
 } // namespace
 
 std::string run_start_json(const std::string& printer, const feeder::BeginRun& begin) {
-    Json json{{"printer", printer}};
+    JsonObject json;
+    json.add("printer", printer);
     if (begin.printer.version) {
-        json["serial_number"] = begin.printer.version->serial_number;
-        json["type"] = begin.printer.version->type;
-        json["firmware"] = begin.printer.version->firmware;
+        json.add("serial_number", begin.printer.version->serial_number)
+            .add("type", begin.printer.version->type)
+            .add("firmware", begin.printer.version->firmware);
     }
     if (begin.printer.total_prints) {
-        json["total_before"] = *begin.printer.total_prints;
+        json.add("total_before", *begin.printer.total_prints);
     }
     if (begin.printer.job_name) {
-        json["job"] = *begin.printer.job_name;
+        json.add("job", *begin.printer.job_name);
     }
-    json["last_printed_before"] = begin.last_printed_before.value();
-    return dump(json);
+    return json.add("last_printed_before", begin.last_printed_before.value()).text();
 }
 
 std::optional<RunStart> parse_run_start(const std::string& text) {
-    const Json json = Json::parse(text, nullptr, false);
-    if (!json.is_object() || !json.contains("printer") || !json["printer"].is_string()) {
+    RunStartReader reader;
+    if (!Json::sax_parse(text, &reader)) {
         return std::nullopt;
     }
-    RunStart start;
-    start.printer = json["printer"].get<std::string>();
-    if (json.contains("serial_number") && json["serial_number"].is_string()) {
-        start.serial_number = json["serial_number"].get<std::string>();
-    }
-    if (json.contains("total_before") && json["total_before"].is_number_unsigned()) {
-        start.total_before = json["total_before"].get<std::uint32_t>();
-    }
-    if (json.contains("last_printed_before") && json["last_printed_before"].is_number_unsigned()) {
-        start.last_printed_before = RecordNumber{json["last_printed_before"].get<std::uint32_t>()};
-    }
-    return start;
+    return std::move(reader).finish();
 }
 
 std::string mail_json(const protocol::MailStatus& mail) {
-    return dump(Json{{"sm", mail_array(mail)}});
+    return JsonObject{}.add_json("sm", mail_array(mail)).text();
 }
 
 std::string settle_json(const feeder::Settle& settle) {
-    Json json{{"basis", to_string(settle.verdict.basis)}, {"sm", mail_array(settle.evidence.mail)}};
+    JsonObject json;
+    json.add("basis", to_string(settle.verdict.basis)).add_json("sm", mail_array(settle.evidence.mail));
     if (settle.evidence.printer.total_prints) {
-        json["total"] = *settle.evidence.printer.total_prints;
+        json.add("total", *settle.evidence.printer.total_prints);
     }
     if (settle.evidence.printer.version) {
-        json["serial_number"] = settle.evidence.printer.version->serial_number;
+        json.add("serial_number", settle.evidence.printer.version->serial_number);
     }
-    return dump(json);
+    if (settle.evidence.restarted) {
+        json.add_json("restarted", "true");
+    }
+    return json.text();
 }
 
 std::string outcome_json(const feeder::Outcome& outcome) {
-    Json json{{"outcome", to_string(outcome.code)}, {"machine", to_string(outcome.machine)}};
+    JsonObject json;
+    json.add("outcome", to_string(outcome.code)).add("machine", to_string(outcome.machine));
     if (!outcome.error.none()) {
-        json["error"] = outcome.error.raw;
+        json.add("error", outcome.error.raw);
     }
-    return dump(json);
+    return json.text();
 }
 
 } // namespace linefeed::daemon

@@ -2,6 +2,7 @@
 
 #include <boost/asio/post.hpp>
 
+#include <future>
 #include <unistd.h>
 
 namespace linefeed::daemon {
@@ -25,11 +26,16 @@ JobRun::~JobRun() {
     join();
 }
 
-void JobRun::start() {
+std::string JobRun::start() {
     store_.start();
     wait_for_replies();
-    link_.connect(settings_.endpoints, settings_.connect_timeout);
-    thread_ = std::thread{[this] { context_.run(); }};
+    std::promise<std::string> granted;
+    thread_ = std::thread{[this, &granted] {
+        granted.set_value(make_real_time(settings_.real_time));
+        link_.connect(settings_.endpoints, settings_.connect_timeout);
+        context_.run();
+    }};
+    return granted.get_future().get();
 }
 
 void JobRun::request_stop() {

@@ -2,6 +2,7 @@
 // see of it.
 #pragma once
 
+#include "daemon/real_time.hpp"
 #include "daemon/store.hpp"
 #include "feeder/outcome.hpp"
 #include "link/printer_address.hpp"
@@ -25,6 +26,7 @@ struct JobRunSettings {
     std::vector<boost::asio::ip::tcp::endpoint> endpoints; ///< of the printer, resolved
     session::SessionSettings session;
     Duration connect_timeout = std::chrono::seconds{3};
+    RealTimeSettings real_time; ///< of the feed thread
 };
 
 /// A glance at the run, from any thread.
@@ -46,7 +48,8 @@ public:
     JobRun(const JobRun&) = delete;
     JobRun& operator=(const JobRun&) = delete;
 
-    void start();
+    /// Returns what the feed thread was granted of JobRunSettings::real_time, for people; empty if nothing was wanted.
+    [[nodiscard]] std::string start();
     /// Stops the line and finds the truth; any thread.
     void request_stop();
     [[nodiscard]] bool finished() const { return finished_.load(std::memory_order_acquire); }

@@ -1,6 +1,7 @@
 #include "daemon/store.hpp"
 
 #include <chrono>
+#include <new>
 #include <utility>
 
 namespace linefeed::daemon {
@@ -39,25 +40,38 @@ bool Store::push(const StoreRequest& request) {
     return true;
 }
 
+template <typename Step>
+void Store::guarded(Step step) {
+    try {
+        step();
+    } catch (const std::bad_alloc&) {
+        send_replies(); // what was done before comes first
+        if (work_.fail_out_of_memory()) {
+            send(StorageFailed{});
+        }
+    }
+}
+
 bool Store::take_requests() {
     bool any = false;
-    StoreRequest request;
-    while (!work_.ended() && requests_.pop(request)) {
-        work_.take(request);
+    // In its place in the ring: a copy would need memory, and a request that throws is taken all the same.
+    const auto take = [this](const StoreRequest& request) { guarded([&] { work_.take(request); }); };
+    while (!work_.ended() && requests_.consume_one(take)) {
         any = true;
     }
     return any;
 }
 
+void Store::send(const StoreReply& reply) {
+    // The lent pages, one answer for each grant and settlement, one for each intent that the feeder waits for, and one
+    // failure: few at a time.
+    LINEFEED_ASSERT(replies_.push(reply));
+    replies_signal_.notify();
+}
+
 void Store::send_replies() {
-    const auto replies = work_.take_replies();
-    for (const StoreReply& reply : replies) {
-        // The lent pages, one answer for each grant and settlement, and one for each intent that the feeder waits for:
-        // few at a time.
-        LINEFEED_ASSERT(replies_.push(reply));
-    }
-    if (!replies.empty()) {
-        replies_signal_.notify();
+    for (const StoreReply& reply : work_.take_replies()) {
+        send(reply);
     }
 }
 
@@ -68,12 +82,12 @@ void Store::run() {
         const bool any = take_requests();
         const Clock::time_point now = Clock::now();
         if (work_.intent_waits() || (work_.wants_commit() && now - last_commit >= gather)) {
-            work_.commit();
+            guarded([this] { work_.commit(); });
             last_commit = Clock::now();
         } else if (work_.wants_read_ahead()) {
-            work_.read_ahead();
+            guarded([this] { work_.read_ahead(); });
         } else if (now - last_checkpoint >= checkpoint_interval) {
-            work_.checkpoint();
+            guarded([this] { work_.checkpoint(); });
             last_checkpoint = now;
         } else if (!any && !work_.ended()) {
             requests_signal_.wait(work_.wants_commit() ? static_cast<int>(gather.count()) : idle_wait_ms);

@@ -42,7 +42,11 @@ public:
 private:
     void run();
     [[nodiscard]] bool take_requests();
+    /// Carries out one step; when it runs out of memory the storage has failed, and the thread lives on.
+    template <typename Step>
+    void guarded(Step step);
     void send_replies();
+    void send(const StoreReply& reply);
 
     StoreWork work_;
     std::thread thread_;

@@ -160,11 +160,18 @@ std::vector<StoreReply> StoreWork::take_replies() {
     return std::exchange(replies_, {});
 }
 
-void StoreWork::fail(const Failure& failure) {
-    if (failure_.empty()) {
-        failure_ = failure.message;
-        replies_.emplace_back(StorageFailed{});
+void StoreWork::fail(Failure failure) {
+    LINEFEED_ASSERT(failure_.empty());      // nothing is asked of the spool after the first
+    replies_.emplace_back(StorageFailed{}); // if it throws, nothing has happened
+    failure_ = std::move(failure.message);
+}
+
+bool StoreWork::fail_out_of_memory() noexcept {
+    if (!failure_.empty()) {
+        return false;
     }
+    failure_ = "out of memory"; // short enough to need none
+    return true;
 }
 
 } // namespace linefeed::daemon

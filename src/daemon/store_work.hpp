@@ -64,6 +64,9 @@ public:
     void checkpoint();
 
     [[nodiscard]] std::vector<StoreReply> take_replies();
+    /// std::bad_alloc came out of one of the above. False if the storage had failed before; otherwise the caller has to
+    /// deliver StorageFailed himself, since there is no memory for a reply.
+    [[nodiscard]] bool fail_out_of_memory() noexcept;
     [[nodiscard]] bool ended() const { return ended_; }
     /// What went wrong with the storage; empty = nothing. Nothing is written after that.
     [[nodiscard]] const std::string& failure() const { return failure_; }
@@ -74,7 +77,7 @@ private:
     void grant(const feeder::BeginRun& begin);
     void adopt(const feeder::AdoptRun& adopted);
     void end(const feeder::End& end);
-    void fail(const Failure& failure);
+    void fail(Failure failure);
 
     spool::Spool& spool_;
     spool::JobId job_;

@@ -1,6 +1,6 @@
 #include "intake/import.hpp"
 
-#include <nlohmann/json.hpp>
+#include "spool/json_text.hpp"
 
 #include <algorithm>
 #include <filesystem>
@@ -183,17 +183,26 @@ Result<ImportOutcome> import_source(RowSource& source, spool::Spool& spool, cons
 }
 
 std::string to_json(const ImportReport& report) {
-    nlohmann::json json{{"rows", report.rows}, {"records", report.records}, {"bad_rows", report.bad_rows}};
-    json["columns"] = nlohmann::json::array();
+    using spool::JsonObject;
+    std::vector<std::string> columns;
     for (std::size_t i = 0; i < report.columns.size(); ++i) {
-        json["columns"].push_back({{"name", report.columns[i]}, {"encoding", protocol::to_string(report.charsets[i])}});
+        columns.push_back(JsonObject{}
+                              .add("encoding", protocol::to_string(report.charsets[i]))
+                              .add("name", report.columns[i])
+                              .text());
     }
-    json["reported"] = nlohmann::json::array();
+    std::vector<std::string> reported;
     for (const BadRow& row : report.reported) {
-        json["reported"].push_back({{"line", row.line}, {"column", row.column}, {"reason", row.reason}});
+        reported.push_back(
+            JsonObject{}.add("column", row.column).add("line", row.line).add("reason", row.reason).text());
     }
-    // Reasons may quote bytes of the source that are no UTF-8.
-    return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+    return JsonObject{}
+        .add("bad_rows", report.bad_rows)
+        .add_json("columns", spool::json_array(columns))
+        .add("records", report.records)
+        .add_json("reported", spool::json_array(reported))
+        .add("rows", report.rows)
+        .text();
 }
 
 } // namespace linefeed::intake

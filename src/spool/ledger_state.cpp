@@ -49,7 +49,7 @@ bool allowed(LedgerKind kind, RecordState state) {
         return state == RecordState::in_doubt;
     case LedgerKind::run_started:
     case LedgerKind::run_ended:
-        return true;
+        return true; // about no record: apply() does not ask
     }
     assertion_failed("LedgerKind", __FILE__, __LINE__);
 }

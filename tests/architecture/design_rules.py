@@ -60,5 +60,5 @@ LIBRARY_FOLDERS = {
     r"boost/(asio|beast)(/.*|\.hpp)?": {"base", "link", "simulator", "daemon"},
     r"CLI/.*": {"cli", "simulator"},
     r"openssl/.*": {"spool"},
-    r"nlohmann/.*": {"intake", "simulator", "daemon", "cli"},
+    r"nlohmann/.*": {"spool", "simulator", "daemon", "cli"},
 }

@@ -71,6 +71,8 @@ TEST(EvidenceJson, shouldSayWhatAVerdictRestsOn) {
     settle.evidence.printer.version->serial_number = "104711";
     EXPECT_EQ(settle_json(settle),
               R"({"basis":")" + basis + R"(","sm":[256,0,100000,0,1],"total":77883,"serial_number":"104711"})");
+    settle.evidence.restarted = true; // the operator has to be asked for ranges then
+    EXPECT_TRUE(settle_json(settle).ends_with(R"("serial_number":"104711","restarted":true})"));
 }
 
 TEST(EvidenceJson, shouldKeepTheErrorNumberAsThePrinterSentIt) {

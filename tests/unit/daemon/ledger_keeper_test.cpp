@@ -1,22 +1,15 @@
 // What the feeder says, as rows of a real spool: which records are granted, and that issued = printed + in doubt +
 // unused + open.
 #include "daemon/ledger_keeper.hpp"
+#include "spool_job.hpp"
 
-#include <gtest/gtest.h>
-
-#include <unistd.h>
+#include <gmock/gmock.h>
 
 namespace linefeed::daemon {
 namespace {
 
 using spool::LedgerKind;
 using spool::RecordState;
-
-constexpr std::uint64_t records_of_job = 2000;
-
-RecordRange closed(std::uint32_t first, std::uint32_t last) {
-    return RecordRange::closed(RecordNumber{first}, RecordNumber{last});
-}
 
 feeder::Settle verdict(RecordRange printed, RecordRange in_doubt, RecordRange unused) {
     feeder::Settle settle;
@@ -30,30 +23,8 @@ feeder::Outcome ended(feeder::OutcomeCode code) {
     return outcome;
 }
 
-class LedgerKeeperTest : public testing::Test {
+class LedgerKeeperTest : public SpoolJobTest {
 protected:
-    LedgerKeeperTest()
-        : directory_(std::filesystem::temp_directory_path() / ("linefeed-keeper-" + std::to_string(::getpid()))) {
-        std::filesystem::remove_all(directory_);
-        spool_.emplace(spool::Spool::open(directory_ / "spool.db", {[this] { return ++clock_; }, {}}).value());
-        spool::JobSpec spec;
-        spec.source.path = "/data/names.csv";
-        auto import = spool_->begin_import(spec).value();
-        RecordPage page{RecordNumber{1}, {}, {}};
-        for (std::uint64_t k = 1; k <= records_of_job; ++k) {
-            page.frames += "^0=MR" + std::to_string(k) + "\tx\r";
-            page.ends.push_back(static_cast<std::uint32_t>(page.frames.size()));
-        }
-        EXPECT_TRUE(import.add(page));
-        job_ = import.commit({}).value().id;
-    }
-    ~LedgerKeeperTest() override {
-        spool_.reset();
-        std::filesystem::remove_all(directory_);
-    }
-    LedgerKeeperTest(const LedgerKeeperTest&) = delete;
-    LedgerKeeperTest& operator=(const LedgerKeeperTest&) = delete;
-
     /// As the next start of the program would make it.
     LedgerKeeper keeper(RecordRange wanted = closed(1, records_of_job)) {
         return LedgerKeeper{*spool_, job_, wanted, "tcp://10.0.0.5:3000", find_open_issue(*spool_, job_).value()};
@@ -66,20 +37,13 @@ protected:
         begin.last_printed_before = RecordNumber{77};
         return begin;
     }
-    std::vector<RecordRange> in_state(RecordState state) { return spool_->ledger_state(job_).value().ranges(state); }
-    std::vector<LedgerKind> kinds() {
-        std::vector<LedgerKind> kinds;
-        for (const spool::LedgerRow& row : spool_->ledger_rows(job_, 0, 1000).value()) {
-            kinds.push_back(row.entry.kind);
-        }
-        return kinds;
+    /// The next start of the program finds the records 131 … 512 open.
+    void crash() {
+        LedgerKeeper ledger = keeper();
+        ASSERT_TRUE(ledger.grant(begin()));
+        ledger.printed(RecordNumber{130}, {});
+        ASSERT_TRUE(ledger.commit());
     }
-
-    using Ranges = std::vector<RecordRange>;
-    std::filesystem::path directory_;
-    std::int64_t clock_ = 0;
-    std::optional<spool::Spool> spool_;
-    spool::JobId job_{};
 };
 
 TEST_F(LedgerKeeperTest, shouldGrantAllOfAFreshJobWithItsFirstIntents) {
@@ -211,12 +175,7 @@ TEST_F(LedgerKeeperTest, shouldFindWhatACrashLeftOpen) {
 }
 
 TEST_F(LedgerKeeperTest, shouldSettleACrashedRunBeforeTheNext) {
-    {
-        LedgerKeeper ledger = keeper();
-        ASSERT_TRUE(ledger.grant(begin()));
-        ledger.printed(RecordNumber{130}, {});
-        ASSERT_TRUE(ledger.commit());
-    }
+    crash();
     LedgerKeeper ledger = keeper();
     feeder::Settle settle = verdict(closed(131, 200), {}, closed(201, 512));
     settle.earlier_run = true;
@@ -237,6 +196,106 @@ TEST_F(LedgerKeeperTest, shouldWriteNothingWhenAnEarlierRunHadNothingOpen) {
         ASSERT_TRUE(ledger.settle(verdict({}, {}, {})));
         EXPECT_EQ(kinds().size(), rows);
     }
+}
+
+TEST_F(LedgerKeeperTest, shouldLeaveTheRestOpenAfterAProvisionalVerdict) {
+    LedgerKeeper ledger = keeper();
+    ASSERT_TRUE(ledger.grant(begin()));
+    feeder::Settle settle = verdict(closed(1, 20), {}, {});
+    settle.provisional = true;
+    ASSERT_TRUE(ledger.settle(settle));
+    EXPECT_EQ(in_state(RecordState::printed), Ranges{closed(1, 20)});
+    EXPECT_EQ(in_state(RecordState::open), Ranges{closed(21, 512)});
+    ASSERT_TRUE(ledger.settle(verdict({}, {}, closed(21, 512))));
+    EXPECT_EQ(in_state(RecordState::unused), Ranges{closed(21, 512)});
+}
+
+TEST_F(LedgerKeeperTest, shouldWriteNothingBehindAVerdictThatReachesTheLastOpenRecord) {
+    LedgerKeeper ledger = keeper();
+    ASSERT_TRUE(ledger.grant(begin()));
+    ASSERT_TRUE(ledger.settle(verdict(closed(1, 511), closed(512, 512), {})));
+    EXPECT_EQ(in_state(RecordState::printed), Ranges{closed(1, 511)});
+    EXPECT_EQ(in_state(RecordState::in_doubt), Ranges{closed(512, 512)});
+    EXPECT_TRUE(in_state(RecordState::unused).empty());
+}
+
+TEST_F(LedgerKeeperTest, shouldTakeDoubtThatLiesBeforeWhatIsPrinted) {
+    LedgerKeeper ledger = keeper();
+    ASSERT_TRUE(ledger.grant(begin()));
+    ASSERT_TRUE(ledger.settle(verdict(closed(2, 512), closed(1, 1), {})));
+    EXPECT_EQ(in_state(RecordState::printed), Ranges{closed(2, 512)});
+    EXPECT_EQ(in_state(RecordState::in_doubt), Ranges{closed(1, 1)});
+    EXPECT_TRUE(in_state(RecordState::unused).empty());
+}
+
+TEST_F(LedgerKeeperTest, shouldGoOnWithARunThatIsStillPrinting) {
+    crash();
+    LedgerKeeper ledger = keeper();
+    const auto grant = ledger.adopt({RecordNumber{200}, RecordNumber{256}, {}});
+    ASSERT_TRUE(grant);
+    EXPECT_EQ(grant->range, closed(1, 2000));
+    EXPECT_EQ(grant->durable_through, RecordNumber{512});
+    EXPECT_EQ(in_state(RecordState::printed), Ranges{closed(1, 200)});
+    ledger.intent(RecordNumber{600});
+    ASSERT_TRUE(ledger.commit());
+    EXPECT_EQ(in_state(RecordState::open), Ranges{closed(201, 600)});
+    EXPECT_EQ(std::ranges::count(kinds(), LedgerKind::run_started), 1);
+}
+
+TEST_F(LedgerKeeperTest, shouldHavePendingConfirmationsWithoutAnIntent) {
+    LedgerKeeper ledger = keeper();
+    ASSERT_TRUE(ledger.grant(begin()));
+    ledger.printed(RecordNumber{1}, {});
+    EXPECT_TRUE(ledger.has_pending());
+}
+
+TEST_F(LedgerKeeperTest, shouldSayThatARunStartCannotBeRead) {
+    const auto run = spool_->begin_run(job_, closed(1, 10), "no run start").value();
+    const spool::LedgerEntry intent{LedgerKind::intent, run, closed(1, 10), {}};
+    ASSERT_TRUE(spool_->append(job_, {&intent, 1}));
+    const auto open = find_open_issue(*spool_, job_);
+    ASSERT_FALSE(open.has_value());
+    EXPECT_EQ(open.error().kind, FailureKind::storage);
+    EXPECT_THAT(open.error().message, testing::HasSubstr("the start of run 1 cannot be read"));
+}
+
+TEST_F(LedgerKeeperTest, shouldPlanNothingWhenNothingIsOpen) {
+    const feeder::FeederPlan plan = make_plan(std::nullopt, job_, closed(1, 2000));
+    EXPECT_FALSE(plan.open.has_value());
+    EXPECT_FALSE(plan.take_over);
+}
+
+TEST_F(LedgerKeeperTest, shouldPlanToGoOnOnlyWithTheSameJobToTheSameEnd) {
+    crash();
+    const auto open = find_open_issue(*spool_, job_).value();
+    const spool::JobId other{99};
+    EXPECT_EQ(make_plan(open, job_, closed(1, 2000)).open, open->facts);
+    EXPECT_TRUE(make_plan(open, job_, closed(1, 2000)).doubt_blocks);
+    EXPECT_TRUE(make_plan(open, job_, closed(1, 2000)).take_over);
+    EXPECT_FALSE(make_plan(open, job_, closed(1, 1999)).take_over);
+    EXPECT_FALSE(make_plan(open, job_, {}).take_over);
+    EXPECT_FALSE(make_plan(open, other, closed(1, 2000)).take_over);
+    EXPECT_FALSE(make_plan(open, other, closed(1, 2000)).doubt_blocks);
+}
+
+TEST_F(LedgerKeeperTest, shouldCallUnusedWhatWasGrantedAndNeverSent) {
+    feeder::Outcome outcome = ended(feeder::OutcomeCode::stop_requested);
+    outcome.issued = false;
+    LedgerKeeper ledger = keeper();
+    ASSERT_TRUE(ledger.grant(begin()));
+    ASSERT_TRUE(ledger.finish(outcome));
+    EXPECT_EQ(in_state(RecordState::unused), Ranges{closed(1, 512)});
+    EXPECT_EQ(kinds().back(), LedgerKind::run_ended);
+}
+
+TEST_F(LedgerKeeperTest, shouldLeaveOpenWhatMayBeInThePrinter) {
+    feeder::Outcome outcome = ended(feeder::OutcomeCode::no_answer);
+    outcome.issued = true;
+    LedgerKeeper ledger = keeper();
+    ASSERT_TRUE(ledger.grant(begin()));
+    ASSERT_TRUE(ledger.finish(outcome));
+    EXPECT_EQ(in_state(RecordState::open), Ranges{closed(1, 512)});
+    EXPECT_EQ(kinds().back(), LedgerKind::run_ended);
 }
 
 } // namespace

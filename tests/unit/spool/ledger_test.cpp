@@ -1,5 +1,6 @@
 #include "spool/ledger.hpp"
 #include "spool/ledger_codec.hpp"
+#include "spool/ledger_history.hpp"
 #include "spool_fixture.hpp"
 
 #include <set>
@@ -55,6 +56,34 @@ TEST(LedgerHash, shouldChangeWithEveryField) {
     add(first_previous_hash, 1, JobId{2}, {LedgerKind::intent, RunId{3}, range(4, 9), "{}"}, 6);
     add(first_previous_hash, 1, JobId{2}, {LedgerKind::intent, RunId{3}, range(4, 8), "{ }"}, 6);
     add(first_previous_hash, 1, JobId{2}, {LedgerKind::intent, RunId{3}, range(4, 8), ""}, 6);
+}
+
+TEST(LedgerEntry, shouldDifferByEveryField) {
+    const LedgerEntry entry{LedgerKind::intent, RunId{3}, range(4, 8), "{}"};
+    EXPECT_EQ(entry, (LedgerEntry{LedgerKind::intent, RunId{3}, range(4, 8), "{}"}));
+    EXPECT_NE(entry, (LedgerEntry{LedgerKind::printed, RunId{3}, range(4, 8), "{}"}));
+    EXPECT_NE(entry, (LedgerEntry{LedgerKind::intent, RunId{4}, range(4, 8), "{}"}));
+    EXPECT_NE(entry, (LedgerEntry{LedgerKind::intent, RunId{3}, range(4, 9), "{}"}));
+    EXPECT_NE(entry, (LedgerEntry{LedgerKind::intent, RunId{3}, range(4, 8), ""}));
+}
+
+TEST(LedgerSegment, shouldDifferByEveryField) {
+    const LedgerSegment segment{range(1, 2), RecordState::open, RunId{3}};
+    EXPECT_EQ(segment, (LedgerSegment{range(1, 2), RecordState::open, RunId{3}}));
+    EXPECT_NE(segment, (LedgerSegment{range(1, 3), RecordState::open, RunId{3}}));
+    EXPECT_NE(segment, (LedgerSegment{range(1, 2), RecordState::unused, RunId{3}}));
+    EXPECT_NE(segment, (LedgerSegment{range(1, 2), RecordState::open, RunId{4}}));
+}
+
+TEST(HistoryStretch, shouldDifferByEveryField) {
+    const HistoryStretch stretch{range(1, 2), RecordState::open, RunId{3}, 4, 5, "{}"};
+    EXPECT_EQ(stretch, (HistoryStretch{range(1, 2), RecordState::open, RunId{3}, 4, 5, "{}"}));
+    EXPECT_NE(stretch, (HistoryStretch{range(1, 3), RecordState::open, RunId{3}, 4, 5, "{}"}));
+    EXPECT_NE(stretch, (HistoryStretch{range(1, 2), RecordState::unused, RunId{3}, 4, 5, "{}"}));
+    EXPECT_NE(stretch, (HistoryStretch{range(1, 2), RecordState::open, RunId{9}, 4, 5, "{}"}));
+    EXPECT_NE(stretch, (HistoryStretch{range(1, 2), RecordState::open, RunId{3}, 9, 5, "{}"}));
+    EXPECT_NE(stretch, (HistoryStretch{range(1, 2), RecordState::open, RunId{3}, 4, 9, "{}"}));
+    EXPECT_NE(stretch, (HistoryStretch{range(1, 2), RecordState::open, RunId{3}, 4, 5, ""}));
 }
 
 } // namespace

@@ -68,6 +68,7 @@ TEST_F(SpoolFaultsTest, shouldTakeNoMoreWritesAfterAFailedAppendUntilItIsReopene
     EXPECT_FALSE(spool->remove_job(job.id));
     EXPECT_FALSE(spool->checkpoint());
     EXPECT_TRUE(spool->read_page(job.id, RecordNumber{1})); // reading goes on
+    EXPECT_EQ(spool->verify_ledger().value(), 1);
     spool.reset();
     EXPECT_EQ(disk_faults().calls, 0) << "something was written after the failure";
     spool.emplace(open());

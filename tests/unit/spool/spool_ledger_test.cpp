@@ -180,6 +180,18 @@ TEST_F(SpoolLedgerTest, shouldKnowTheNewestRunAndWhetherItEnded) {
     EXPECT_FALSE(spool->last_run(job.id).value()->ended);
 }
 
+TEST_F(SpoolLedgerTest, shouldListTheJobsWithOpenRecords) {
+    const Job other = make_job(*spool, 10);
+    const RunId run = begin_run();
+    const RunId other_run = spool->begin_run(other.id, other.records, "").value();
+    EXPECT_TRUE(spool->jobs_with_open_records().value().empty()) << "a run that begins issues nothing";
+    ASSERT_TRUE(append(*spool, other.id, {{LedgerKind::intent, other_run, range(1, 5), ""}}));
+    ASSERT_TRUE(append(*spool, job.id, {{LedgerKind::intent, run, range(1, 5), ""}}));
+    EXPECT_EQ(spool->jobs_with_open_records().value(), (std::vector{job.id, other.id}));
+    ASSERT_TRUE(append(*spool, job.id, {{LedgerKind::unused, run, range(1, 5), ""}}));
+    EXPECT_EQ(spool->jobs_with_open_records().value(), std::vector{other.id});
+}
+
 TEST_F(SpoolLedgerTest, shouldManageMoreJobsThanItKeepsInMemory) {
     std::vector<std::pair<JobId, RunId>> runs;
     for (int i = 0; i < 150; ++i) {

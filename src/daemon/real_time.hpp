@@ -1,0 +1,26 @@
+// What the operating system grants the feed thread, so that nothing else on the machine makes it late: a real-time
+// scheduling class, a processor of its own, memory that is never paged out (design, section 3). All of it is optional:
+// what is not permitted is said in one line, and the thread goes on without.
+#pragma once
+
+#include <optional>
+#include <string>
+
+namespace linefeed::daemon {
+
+struct RealTimeSettings {
+    /// SCHED_FIFO with this priority, 1…99.
+    std::optional<int> priority{};
+    /// The thread runs on this processor only, 0….
+    std::optional<int> processor{};
+    /// The memory of the whole process stays in RAM, and the thread's stack is touched beforehand.
+    bool lock_memory = false;
+
+    [[nodiscard]] bool wanted() const { return priority || processor || lock_memory; }
+};
+
+/// Asks for what is wanted, for the calling thread. Returns one line for people: what was granted, and for what was not
+/// the reason and the remedy.
+[[nodiscard]] std::string make_real_time(const RealTimeSettings& settings);
+
+} // namespace linefeed::daemon
