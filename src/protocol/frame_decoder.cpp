@@ -15,11 +15,12 @@ namespace {
 
 constexpr char frame_start = '^';
 constexpr char frame_end = '\r';
+constexpr char line_feed = '\n';
 constexpr char escape = '\\';
 constexpr std::size_t head_bytes = 3; ///< `^`, address, group
 
 bool is_filling(char byte) {
-    return byte == ' ' || byte == '\n' || byte == '\0';
+    return byte == ' ' || byte == line_feed || byte == '\0';
 }
 bool is_digit(char byte) {
     return byte >= '0' && byte <= '9';
@@ -131,10 +132,14 @@ FrameDecoder::Step FrameDecoder::take_head(std::string_view bytes) {
 
 FrameDecoder::Step FrameDecoder::take_payload(std::string_view bytes) {
     const char byte = bytes.front();
-    // The length counts from the group to the CR, so this many bytes of the frame precede the CR.
+    // The length counts from the group to the CR, so this many bytes of the frame precede the CR. Firmware that ends in
+    // LF CR may have left the LF out of the count.
     const std::uint64_t expected = head_bytes - 1 + length_digits + length_ - 1;
     const bool has_length = digits_ > 0;
-    if (has_length && (byte == frame_end) != (received_ == expected)) {
+    if (has_length && received_ == expected && byte == line_feed) {
+        return keep(bytes.substr(0, 1)); // the only byte that may lie between the counted ones and the CR
+    }
+    if (has_length && (byte == frame_end) != (received_ >= expected)) {
         return damaged(FrameErrc::bad_length);
     }
     if (byte == frame_end) {
@@ -206,7 +211,7 @@ Frame FrameDecoder::frame() const {
     const std::string_view raw = std::string_view{buffer_.data(), size_};
     const std::size_t group_at = head_bytes - 1 + digits_;
     std::string_view payload = raw.substr(group_at + 1);
-    if (!truncated() && payload.ends_with('\n')) {
+    if (!truncated() && payload.ends_with(line_feed)) {
         payload.remove_suffix(1);
     }
     return {.address = raw[1],

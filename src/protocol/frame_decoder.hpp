@@ -21,7 +21,7 @@ enum class FrameErrc {
     interrupted, ///< a new `^` before the CR of the frame (a CR was lost): the first part is dropped
     bad_address, ///< the byte behind `^` is not 0-9 or A-F
     bad_group,   ///< the byte behind the address (and length) is not one of the five groups
-    bad_length,  ///< the length of `!LN` does not agree with the place of the CR
+    bad_length, ///< the length of `!LN` does not agree with the place of the CR, a LF directly before it counted or not
 };
 
 /// One damaged stretch of the stream.

@@ -75,6 +75,16 @@ TEST(FrameDecoderDamage, shouldRefuseAFrameThatGoesOnBehindItsLength) {
     EXPECT_THAT(decode("^000013=RS2\t6\t0\t0\t0^0!GO\r"), ElementsAre("bad_length 19", "0!GO [^0!GO]")) << "a lost CR";
 }
 
+TEST(FrameDecoderDamage, shouldAcceptNothingButOneLineFeedBetweenTheLengthAndTheCarriageReturn) {
+    EXPECT_THAT(decode("^000004!GO\n\n\r^0!ST\r"), ElementsAre("bad_length 12", "0!ST [^0!ST]"));
+    EXPECT_THAT(decode("^000004!GO\nx\r^0!ST\r"), ElementsAre("bad_length 12", "0!ST [^0!ST]"));
+    EXPECT_THAT(decode("^000003!GO\n\r^0!ST\r"), ElementsAre("bad_length 11", "0!ST [^0!ST]"));
+    EXPECT_THAT(decode("^000004!GO\n^0!ST\r"), ElementsAre("bad_length 11", "0!ST [^0!ST]")) << "a lost CR";
+    EXPECT_THAT(decode("^000006!GO\n\r^0!ST\r"), ElementsAre("bad_length 11", "0!ST [^0!ST]")) << "too long by one";
+    // What lies behind the line feed is decoded once more where it looked escaped.
+    EXPECT_THAT(decode("^000030=JLA\\^000004!GO\n\r"), ElementsAre("bad_length 12", "0!GO [^000004!GO\n] length"));
+}
+
 TEST(FrameDecoderDamage, shouldFindTheFrameThatBeginsWhereTheCarriageReturnWasDue) {
     // The path ends in a single backslash and its CR is lost: only the length tells that `\^` is no escape.
     EXPECT_THAT(decode("^000006=JLA\\^000004!GO\r"), ElementsAre("bad_length 12", "0!GO [^000004!GO] length"));
@@ -133,6 +143,7 @@ TEST(FrameDecoderDamage, shouldCheckTheLengthOfAnOverlongFrameToo) {
     const std::string kept = "^009000=" + long_data.substr(8);
     const std::string rest(9000 - 2 - (max_frame_bytes - 8), 'x');
     EXPECT_THAT(decode(kept + rest + "\r"), ElementsAre("0=" + kept.substr(8) + " [" + kept + "] length truncated"));
+    EXPECT_THAT(decode(kept + rest + "\n\r"), ElementsAre("0=" + kept.substr(8) + " [" + kept + "] length truncated"));
     EXPECT_THAT(decode(kept + rest + "x\r"), ElementsAre("bad_length 9007"));
     // What is not in the buffer cannot be decoded once more.
     const std::string hiding = "^099000=\\^0" + long_data;

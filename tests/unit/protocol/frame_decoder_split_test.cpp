@@ -20,7 +20,9 @@ std::string eventful_stream() {
            "^G!GO\r^0GO\r^012=\r^\r^0\r"
            "^000030=JLA\\^000013=RS2\t6\t0\t0\t0\r"
            "^000010=JLA\\^000013=RS2\t6\t0\t0\t0\r"
-           "^000013=RS2\t6\t0\t0\t0^0!ST\r";
+           "^000013=RS2\t6\t0\t0\t0^0!ST\r"
+           "^000013=RS2\t6\t0\t0\t0\n\r^000014=RS2\t6\t0\t0\t0\n\r\n"
+           "^000004!GO\n\n\r^000004!GO\n^0!ST\n\r";
 }
 
 class FrameDecoderSplit : public testing::TestWithParam<EscapeMode> {};
@@ -74,6 +76,9 @@ std::string random_stream(std::mt19937_64& random, std::size_t size) {
             stream += "^000004!GO\r";
             break;
         case 2:
+            stream += "^000004!GO\n\r";
+            break;
+        case 3:
             stream.push_back(static_cast<char>(random() % 256));
             break;
         default:

@@ -103,6 +103,16 @@ TEST(FrameDecoder, shouldCountEscapesAndLineFeedInTheLength) {
     EXPECT_THAT(decode("^000005!GO\n\r"), ElementsAre("0!GO [^000005!GO\n] length"));
 }
 
+TEST(FrameDecoder, shouldAcceptALengthThatLeavesOutTheLineFeedBeforeTheCarriageReturn) {
+    EXPECT_THAT(decode("^000013=RS2\t6\t0\t0\t0\n\r^000014=RS2\t6\t0\t0\t0\n\r"),
+                ElementsAre("0=RS2\t6\t0\t0\t0 [^000013=RS2\t6\t0\t0\t0\n] length",
+                            "0=RS2\t6\t0\t0\t0 [^000014=RS2\t6\t0\t0\t0\n] length"));
+    EXPECT_THAT(decode("^000004!GO\n\r\n^000002!\n\r"),
+                ElementsAre("0!GO [^000004!GO\n] length", "0! [^000002!\n] length"));
+    EXPECT_THAT(decode("^000007=JLA\\\\\n\r^0!GO\r"),
+                ElementsAre("0=JLA\\\\ [^000007=JLA\\\\\n] length", "0!GO [^0!GO]"));
+}
+
 TEST(FrameDecoder, shouldTakeAnEscapedCaretForData) {
     EXPECT_THAT(decode("^0=MR1\ta\\^b\r"), ElementsAre("0=MR1\ta\\^b [^0=MR1\ta\\^b]"));
     EXPECT_THAT(decode("^0=MR1\t\\\\\\^b\r"), ElementsAre("0=MR1\t\\\\\\^b [^0=MR1\t\\\\\\^b]"));
