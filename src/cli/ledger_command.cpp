@@ -10,7 +10,6 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <charconv>
 #include <iostream>
 
 namespace linefeed::cli {
@@ -277,27 +276,6 @@ ExitCode run_jobs(const JobsOptions& options) {
 
 ExitCode run_ledger(const LedgerOptions& options) {
     return finish(ledger(options), options.json);
-}
-
-std::optional<RecordRange> parse_record_range(const std::string& text) {
-    std::uint32_t first = 0;
-    const char* const end = text.data() + text.size();
-    const auto [stop, error] = std::from_chars(text.data(), end, first);
-    if (error != std::errc{}) {
-        return std::nullopt;
-    }
-    if (stop == end) {
-        return RecordRange{RecordNumber{first}, RecordCount{1}};
-    }
-    std::uint32_t last = 0;
-    if (*stop != '-') {
-        return std::nullopt;
-    }
-    const auto [last_stop, last_error] = std::from_chars(stop + 1, end, last);
-    if (last_error != std::errc{} || last_stop != end || last < first) {
-        return std::nullopt;
-    }
-    return RecordRange::closed(RecordNumber{first}, RecordNumber{last});
 }
 
 } // namespace linefeed::cli

@@ -31,7 +31,4 @@ struct LedgerOptions {
 [[nodiscard]] ExitCode run_jobs(const JobsOptions& options);
 [[nodiscard]] ExitCode run_ledger(const LedgerOptions& options);
 
-/// Reads "17" or "17-40". std::nullopt if it is neither.
-[[nodiscard]] std::optional<RecordRange> parse_record_range(const std::string& text);
-
 } // namespace linefeed::cli

@@ -1,6 +1,7 @@
 // The command line of linefeed. CLI11 stays in this file.
 #include "cli/ledger_command.hpp"
 #include "cli/print_command.hpp"
+#include "cli/record_ranges.hpp"
 
 #include <CLI/CLI.hpp>
 
@@ -86,8 +87,16 @@ void add_print(CLI::App& app, PrintOptions& options, RawPrintOptions& raw) {
         ->allow_extra_args(false)
         ->delimiter(',')
         ->expected(0, 16);
+    print.add_option("--realtime-priority", options.real_time.priority,
+                     "Schedule the feed thread as SCHED_FIFO with this priority, if permitted")
+        ->check(CLI::Range(1, 99));
+    print.add_option("--processor", options.real_time.processor, "Run the feed thread on this processor only, 0 ...")
+        ->check(CLI::NonNegativeNumber);
+    print.add_flag("--lock-memory", options.real_time.lock_memory, "Keep all memory in RAM, if permitted");
     print.add_option("--last-printed", options.operator_word.last_printed,
-                     "Number or text of the record on the last product: settles records in doubt");
+                     "Number or text of the record on the last product: settles records in doubt, where that tells");
+    print.add_option("--printed", options.operator_word.printed,
+                     "The records in doubt that are on products, all of them: N-M,N or none; the others will be printed");
     print
         .add_option("--in-doubt", raw.in_doubt,
                     "Records in doubt: ask (stop with exit code 6), skip (do not print them again) or reprint")
@@ -126,8 +135,13 @@ std::string finish_options(PrintOptions& options, const RawPrintOptions& raw) {
     options.operator_word.policy = raw.in_doubt == "skip"      ? InDoubtPolicy::skip
                                    : raw.in_doubt == "reprint" ? InDoubtPolicy::reprint
                                                                : InDoubtPolicy::ask;
-    if (options.operator_word.policy != InDoubtPolicy::ask && !options.operator_word.last_printed.empty()) {
-        return "--in-doubt and --last-printed exclude each other";
+    const bool last_printed = !options.operator_word.last_printed.empty();
+    if (last_printed && options.operator_word.printed) {
+        return "--last-printed and --printed exclude each other";
+    }
+    if (options.operator_word.policy != InDoubtPolicy::ask && (last_printed || options.operator_word.printed)) {
+        return "--in-doubt " + raw.in_doubt + (last_printed ? " and --last-printed" : " and --printed") +
+               " exclude each other";
     }
     if (options.table && options.query) {
         return "--table and --query exclude each other";

@@ -1,9 +1,12 @@
 #include "cli/operator_word.hpp"
 
+#include "base/assert.hpp"
+#include "cli/record_ranges.hpp"
 #include "cli/record_text.hpp"
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <charconv>
 #include <pwd.h>
 #include <unistd.h>
@@ -87,48 +90,116 @@ Result<RecordNumber> last_printed(spool::Spool& spool, const spool::Job& job, co
                                        " have this text; say the number"};
 }
 
+std::string how_to_name_all(const DoubtEvidence& doubt) {
+    return "look which of the records in doubt, " + to_text(doubt.ranges) +
+           ", are on products, and name all of these with --printed (N-M,N or none)";
+}
+
+/// The record on the last product tells about all of them.
+Result<void> check_last_printed(const DoubtEvidence& doubt, const OperatorWord& word) {
+    if (doubt.may_have_hole()) {
+        return Failure{FailureKind::usage, "--last-printed " + word.last_printed + " is not enough to go on: " +
+                                               doubt.hole + "; " + how_to_name_all(doubt)};
+    }
+    return {};
+}
+
+/// The records in doubt that are printed, by the last of them.
+Result<std::vector<RecordRange>> printed_by_last(spool::Spool& spool, const spool::Job& job, const DoubtEvidence& doubt,
+                                                 const OperatorWord& word) {
+    if (const auto sound = check_last_printed(doubt, word); !sound) {
+        return sound.error();
+    }
+    const auto last = last_printed(spool, job, doubt.ranges, word.last_printed);
+    if (!last) {
+        return last.error();
+    }
+    const RecordRange& in_doubt = doubt.ranges.front(); // there is only one, or there may be a hole
+    if (doubt.most_printed && *last > *doubt.most_printed && in_doubt.contains(*last)) {
+        return Failure{FailureKind::usage, "--last-printed " + word.last_printed +
+                                               " cannot mean that all before it are printed: by its total print "
+                                               "counter the printer came no further than record " +
+                                               std::to_string(doubt.most_printed->value()) + "; " +
+                                               how_to_name_all(doubt)};
+    }
+    const RecordRange printed = RecordRange::closed(in_doubt.first(), *last);
+    return printed.empty() ? std::vector<RecordRange>{} : std::vector<RecordRange>{printed};
+}
+
+/// The records in doubt that are printed, all of them named.
+Result<std::vector<RecordRange>> printed_by_name(const DoubtEvidence& doubt, const std::string& said) {
+    auto printed = parse_record_ranges(said);
+    if (!printed) {
+        return Failure{FailureKind::usage, "--printed: " + printed.error().message};
+    }
+    for (const RecordRange& range : *printed) {
+        const bool within = std::any_of(doubt.ranges.begin(), doubt.ranges.end(), [&](const RecordRange& in_doubt) {
+            return in_doubt.contains(range.first()) && in_doubt.contains(range.last());
+        });
+        if (!within) {
+            return Failure{FailureKind::usage, "--printed " + to_text(range) +
+                                                   ": only these records are in doubt: " + to_text(doubt.ranges)};
+        }
+    }
+    return printed;
+}
+
+/// Rows for one stretch: what of it is printed, and the rest, which is not.
+void add_rows(const spool::LedgerSegment& segment, const std::vector<RecordRange>& printed, const std::string& said,
+              std::vector<LedgerEntry>& entries) {
+    const RecordRange all = segment.range;
+    std::optional<RecordNumber> next = all.first(); // of what has no row yet
+    const auto add = [&](LedgerKind kind, RecordNumber last) {
+        if (const RecordRange part = RecordRange::closed(*next, last); !part.empty()) {
+            entries.push_back({kind, segment.run, part, said});
+        }
+        next = last == all.last() ? std::nullopt : std::optional{last.next()};
+    };
+    for (const RecordRange& range : printed) {
+        const RecordRange part =
+            RecordRange::closed(std::max(range.first(), all.first()), std::min(range.last(), all.last()));
+        if (part.empty()) {
+            continue;
+        }
+        if (part.first() > *next) {
+            add(LedgerKind::unused, part.first().previous());
+        }
+        add(LedgerKind::printed, part.last());
+    }
+    if (next) {
+        add(LedgerKind::unused, all.last());
+    }
+}
+
 } // namespace
 
 Result<void> settle_by_operator(spool::Spool& spool, const spool::Job& job, const OperatorWord& word) {
-    const auto state = spool.ledger_state(job.id);
-    if (!state) {
-        return state.error();
-    }
-    const std::vector<RecordRange> doubt = state->ranges(RecordState::in_doubt);
-    if (doubt.empty()) {
-        return {};
-    }
-    std::optional<RecordNumber> last;
-    if (!word.last_printed.empty()) {
-        const auto found = last_printed(spool, job, doubt, word.last_printed);
-        if (!found) {
-            return found.error();
-        }
-        last = *found;
+    LINEFEED_ASSERT(word.given());
+    const auto doubt = doubt_evidence(spool, job);
+    if (!doubt) {
+        return doubt.error();
     }
     std::vector<LedgerEntry> entries;
-    for (const spool::LedgerSegment& segment : state->segments()) {
-        if (segment.state != RecordState::in_doubt) {
-            continue;
-        }
-        if (!last) {
-            const bool skip = word.policy == InDoubtPolicy::skip;
+    if (doubt->segments.empty()) {
+        return {};
+    }
+    if (word.last_printed.empty() && !word.printed) {
+        const bool skip = word.policy == InDoubtPolicy::skip;
+        for (const spool::LedgerSegment& segment : doubt->segments) {
             entries.push_back({skip ? LedgerKind::skipped : LedgerKind::released, segment.run, segment.range,
                                evidence(skip ? "do not print again" : "print again")});
-            continue;
         }
-        const std::string said = evidence("last printed: " + word.last_printed);
-        const RecordRange printed = RecordRange::closed(segment.range.first(), std::min(*last, segment.range.last()));
-        const RecordRange rest =
-            *last >= segment.range.last()
-                ? RecordRange{}
-                : RecordRange::closed(std::max(segment.range.first(), last->next()), segment.range.last());
-        if (!printed.empty()) {
-            entries.push_back({LedgerKind::printed, segment.run, printed, said});
-        }
-        if (!rest.empty()) {
-            entries.push_back({LedgerKind::unused, segment.run, rest, said});
-        }
+        return spool.append(job.id, entries);
+    }
+    const auto printed =
+        word.printed ? printed_by_name(*doubt, *word.printed) : printed_by_last(spool, job, *doubt, word);
+    if (!printed) {
+        return printed.error();
+    }
+    const std::string said =
+        evidence(word.printed ? "printed: " + *word.printed : "last printed: " + word.last_printed);
+    for (const spool::LedgerSegment& segment : doubt->segments) {
+        add_rows(segment, *printed, said, entries);
     }
     return spool.append(job.id, entries);
 }

@@ -1,5 +1,6 @@
 #include "cli/print_command.hpp"
 
+#include "cli/dry_run.hpp"
 #include "cli/job_selection.hpp"
 #include "cli/print_report.hpp"
 #include "cli/progress_view.hpp"
@@ -7,8 +8,6 @@
 #include "cli/signals.hpp"
 #include "cli/wall_time.hpp"
 #include "daemon/job_run.hpp"
-
-#include <nlohmann/json.hpp>
 
 #include <chrono>
 #include <iostream>
@@ -18,35 +17,6 @@
 namespace linefeed::cli {
 
 namespace {
-
-/// A directory of its own for a spool that is gone with the object: for --dry-run.
-class TemporaryDirectory {
-public:
-    [[nodiscard]] static Result<TemporaryDirectory> make() {
-        std::string path = (std::filesystem::temp_directory_path() / "linefeed-XXXXXX").string();
-        if (::mkdtemp(path.data()) == nullptr) {
-            return Failure{FailureKind::storage, "a temporary directory cannot be made: " + path};
-        }
-        return TemporaryDirectory{path};
-    }
-    TemporaryDirectory(TemporaryDirectory&& other) noexcept
-        : path_(std::exchange(other.path_, {})) {}
-    ~TemporaryDirectory() {
-        if (!path_.empty()) {
-            std::error_code ignored;
-            std::filesystem::remove_all(path_, ignored);
-        }
-    }
-    TemporaryDirectory(const TemporaryDirectory&) = delete;
-    TemporaryDirectory& operator=(const TemporaryDirectory&) = delete;
-    TemporaryDirectory& operator=(TemporaryDirectory&&) = delete;
-    [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-
-private:
-    explicit TemporaryDirectory(std::filesystem::path path)
-        : path_(std::move(path)) {}
-    std::filesystem::path path_;
-};
 
 class PrintCommand {
 public:
@@ -60,7 +30,6 @@ private:
     Result<ExitCode> run(const std::filesystem::path& spool_path, const link::PrinterAddress& printer);
     Result<spool::Job> find_job(spool::Spool& spool);
     [[nodiscard]] Result<RecordRange> wanted_range(const spool::Job& job) const;
-    Result<ExitCode> dry_run(spool::Spool& spool, const spool::Job& job, RecordRange wanted) const;
     Result<ExitCode> print(spool::Spool& spool, const spool::Job& job, RecordRange wanted,
                            const daemon::JobRunSettings& settings);
     Result<std::optional<feeder::Outcome>> settle_other_jobs(spool::Spool& spool, const spool::Job& job,
@@ -70,6 +39,7 @@ private:
     Result<bool> settle_doubt(spool::Spool& spool, const spool::Job& job);
     bool wait_for_answer();
     Result<bool> ask_operator(spool::Spool& spool, const spool::Job& job);
+    void start(daemon::JobRun& run);
     void watch(daemon::JobRun& run, RecordRange wanted);
     [[nodiscard]] daemon::JobRunSettings run_settings() const;
 
@@ -90,6 +60,7 @@ daemon::JobRunSettings PrintCommand::run_settings() const {
         settings.session.feeder.acknowledge.push_back(code);
     }
     settings.connect_timeout = std::chrono::milliseconds{options_.connect_timeout_ms};
+    settings.real_time = options_.real_time;
     return settings;
 }
 
@@ -119,7 +90,7 @@ Result<ExitCode> PrintCommand::run(const std::filesystem::path& spool_path, cons
         return wanted.error();
     }
     if (options_.dry_run) {
-        return dry_run(*spool, *job, *wanted);
+        return show_dry_run(options_, *spool, *job, *wanted);
     }
     const auto endpoints = link::resolve(printer);
     if (!endpoints) {
@@ -185,48 +156,6 @@ Result<RecordRange> PrintCommand::wanted_range(const spool::Job& job) const {
     return RecordRange::closed(from, to);
 }
 
-Result<ExitCode> PrintCommand::dry_run(spool::Spool& spool, const spool::Job& job, RecordRange wanted) const {
-    constexpr std::uint64_t frames_shown = 5;
-    const RecordRange shown{wanted.first(), std::min(wanted.count(), RecordCount{frames_shown})};
-    std::vector<std::string> frames;
-    for (RecordNumber number = shown.first(); shown.contains(number); number = number.next()) {
-        const auto page = spool.read_page(job.id, number);
-        if (!page) {
-            return page.error();
-        }
-        std::string text;
-        for (const char c : page->slice({number, RecordCount{1}})) {
-            const auto byte = static_cast<unsigned char>(c);
-            char escaped[8];
-            std::snprintf(escaped, sizeof escaped, byte < 0x20 || byte >= 0x7F ? "<%02X>" : "%c", byte);
-            text += c == '\t' ? "<TAB>" : c == '\r' ? "<CR>" : escaped;
-        }
-        frames.push_back(text);
-        if (number == RecordNumber::max()) {
-            break;
-        }
-    }
-    if (options_.json) {
-        const nlohmann::ordered_json json{{"result", "dry_run"},
-                                          {"exit_code", 0},
-                                          {"records", wanted.count().value()},
-                                          {"first", wanted.first().value()},
-                                          {"last", wanted.last().value()},
-                                          {"frames", frames}};
-        std::cout << json.dump(2) << std::endl;
-        return ExitCode::done;
-    }
-    for (const std::string& frame : frames) {
-        std::cout << frame << '\n';
-    }
-    if (wanted.count() > shown.count()) {
-        std::cout << "… and " << (wanted.count() - shown.count()) << " more\n";
-    }
-    std::cout << "dry run: " << wanted.count() << " records (" << wanted << ") can be printed; nothing was sent"
-              << std::endl;
-    return ExitCode::done;
-}
-
 /// Other jobs may have records in this printer whose fate only it knows, until it is flushed: they are settled first.
 /// The outcome is that of a printer which could not be asked; absent = nothing stands in the way.
 Result<std::optional<feeder::Outcome>> PrintCommand::settle_other_jobs(spool::Spool& spool, const spool::Job& job,
@@ -247,7 +176,7 @@ Result<std::optional<feeder::Outcome>> PrintCommand::settle_other_jobs(spool::Sp
         view_.message("job " + std::to_string(static_cast<std::int64_t>(other)) +
                       " may have records in this printer: asking how far it came");
         daemon::JobRun run{spool, **other_job, {}, *open, settings};
-        run.start();
+        start(run);
         watch(run, {});
         run.join();
         const auto left = daemon::find_open_issue(spool, other);
@@ -286,9 +215,21 @@ Result<bool> PrintCommand::ask_operator(spool::Spool& spool, const spool::Job& j
     }
     show_doubtful(*report);
     OperatorWord word;
-    std::cerr << "Which record is on the last product? Its number or text (nothing = decide later): " << std::flush;
-    if (!wait_for_answer() || !std::getline(std::cin, word.last_printed) || word.last_printed.empty()) {
+    if (report->doubt_hole.empty()) {
+        std::cerr << "Which record is on the last product? Its number or text (nothing = decide later): ";
+    } else {
+        std::cerr << "The last product does not tell which of them are printed: " << report->doubt_hole
+                  << ".\nWhich of these records are on products? N-M,N or none (nothing = decide later): ";
+    }
+    std::cerr.flush();
+    std::string answer;
+    if (!wait_for_answer() || !std::getline(std::cin, answer) || answer.empty()) {
         return false;
+    }
+    if (report->doubt_hole.empty()) {
+        word.last_printed = answer;
+    } else {
+        word.printed = answer;
     }
     if (const auto settled = settle_by_operator(spool, job, word); !settled) {
         return settled.error();
@@ -336,7 +277,7 @@ Result<feeder::Outcome> PrintCommand::print_runs(spool::Spool& spool, const spoo
             return outcome;
         }
         daemon::JobRun run{spool, job, wanted, *open, settings};
-        run.start();
+        start(run);
         watch(run, wanted);
         run.join();
         outcome = run.outcome();
@@ -380,6 +321,12 @@ Result<ExitCode> PrintCommand::print(spool::Spool& spool, const spool::Job& job,
     }
     show_report(*report, options_.json);
     return report->code;
+}
+
+void PrintCommand::start(daemon::JobRun& run) {
+    if (const std::string granted = run.start(); !granted.empty()) {
+        view_.message(granted);
+    }
 }
 
 void PrintCommand::watch(daemon::JobRun& run, RecordRange wanted) {

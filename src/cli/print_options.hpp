@@ -2,6 +2,7 @@
 #pragma once
 
 #include "cli/operator_word.hpp"
+#include "daemon/real_time.hpp"
 #include "protocol/charset.hpp"
 #include "protocol/mail_record.hpp"
 #include "protocol/profile.hpp"
@@ -40,6 +41,7 @@ struct PrintOptions {
     bool new_job = false;
     bool open_nozzle = false;
     std::vector<std::uint32_t> acknowledge;
+    daemon::RealTimeSettings real_time;
     std::uint32_t connect_timeout_ms = 3000;
     std::uint32_t reply_timeout_ms = 2000;
 

@@ -1,5 +1,6 @@
 #include "cli/print_report.hpp"
 
+#include "cli/doubt_evidence.hpp"
 #include "cli/progress_view.hpp"
 #include "cli/record_text.hpp"
 
@@ -62,6 +63,11 @@ Result<PrintReport> make_report(spool::Spool& spool, const spool::Job& job, Reco
     }
     if (report.in_doubt > RecordCount{0}) {
         report.code = ExitCode::in_doubt;
+        const auto doubt = doubt_evidence(spool, job);
+        if (!doubt) {
+            return doubt.error();
+        }
+        report.doubt_hole = doubt->hole;
     }
     return report;
 }
@@ -85,7 +91,8 @@ void show_json(const PrintReport& report) {
                     {"next", report.next.empty() ? Json(nullptr) : Json(report.next.first().value())},
                     {"issued_unknown", report.open.value()},
                     {"in_doubt", report.in_doubt.value()},
-                    {"in_doubt_records", doubtful}};
+                    {"in_doubt_records", doubtful},
+                    {"in_doubt_hole", report.doubt_hole.empty() ? Json(nullptr) : Json(report.doubt_hole)}};
     std::cout << dump(json) << std::endl;
 }
 
@@ -96,7 +103,8 @@ void show_doubtful(const PrintReport& report) {
         std::cout << "in doubt: " << record.number << "  " << printable(joined(record.fields, " | ")) << '\n';
     }
     if (report.in_doubt.value() > report.doubtful.size()) {
-        std::cout << "in doubt: " << report.in_doubt.value() - report.doubtful.size() << " more\n";
+        std::cout << "in doubt: " << report.in_doubt.value() - report.doubtful.size() << " more, see linefeed ledger "
+                  << static_cast<std::int64_t>(report.job.id) << '\n';
     }
     std::cout.flush();
 }
@@ -116,7 +124,11 @@ void show_report(const PrintReport& report, bool json) {
     }
     std::cout << '\n';
     show_doubtful(report);
-    if (report.in_doubt > RecordCount{0}) {
+    if (!report.doubt_hole.empty()) {
+        std::cout << "the last product does not tell which of them are printed: " << report.doubt_hole
+                  << "\nto go on: look which of these records are on products, and start again with --printed N-M,N "
+                     "(or none); or with --in-doubt skip or reprint\n";
+    } else if (report.in_doubt > RecordCount{0}) {
         std::cout << "to go on: look at the last product, and start again with --last-printed NUMBER (or its text); "
                      "or with --in-doubt skip or reprint\n";
     } else if (report.open > RecordCount{0}) {

@@ -34,6 +34,8 @@ struct PrintReport {
     RecordCount open; ///< issued, fate to be found out at the next start
     RecordCount in_doubt;
     std::vector<DoubtfulRecord> doubtful; ///< the first of them
+    /// Why the last product does not tell which of them are printed (DoubtEvidence::hole); empty = it does.
+    std::string doubt_hole;
 };
 
 inline constexpr std::size_t max_doubtful_shown = 300;

@@ -227,6 +227,9 @@ class BadOptions(BadInput):
     def test_options_that_do_not_fit(self):
         self.refuse_options("--table", "names")
         self.refuse_options("--table", "a", "--query", "b", words=("--table", "--query"))
+        self.refuse_options("--last-printed", "5", "--printed", "5", words=("--last-printed", "--printed"))
+        self.refuse_options("--last-printed", "5", "--in-doubt", "skip", words=("--last-printed", "--in-doubt skip"))
+        self.refuse_options("--printed", "none", "--in-doubt", "reprint", words=("--printed", "--in-doubt reprint"))
 
     def test_a_number_space_that_is_too_small(self):
         file = self.write_csv([["a"], ["b"], ["c"]])

@@ -32,7 +32,7 @@ class Result:
 
     # What stderr may hold besides the one line that says what is wrong: progress, notices, and the sum of bad rows.
     CONTEXT = re.compile(r"linefeed: (imported \d+ records|importing +\d|printing( +\d|$)|acknowledged|stopping the line$|nothing is imported: "
-                         r"|the printer (reports (?!error )|was still printing|does not keep the stop point)|opening the nozzle)")
+                         r"|the printer (reports (?!error )|(was|is) still printing|does not keep the stop point)|opening the nozzle)")
 
     @property
     def errors(self):
@@ -99,12 +99,18 @@ class Simulator:
 
 
 class Proxy:
-    """Stands between linefeed and the printer, for faults of the network alone: cut() and mute(), and heal()."""
+    """Stands between linefeed and the printer: listens in (said()), and for faults of the network alone: cut(), mute(), hold() and
+    heal(). `crumbs`: what the printer says arrives byte by byte."""
 
-    def __init__(self, port):
-        self.target = port
+    def __init__(self, simulator, crumbs=False):
+        self.simulator = simulator
+        self.crumbs = crumbs
         self.muted = False
+        self.open = threading.Event()
+        self.open.set()
+        self.refill_wanted = False
         self.sockets = []
+        self.heard = []  # of linefeed, one entry for each read
         self.listener = socket.create_server(("127.0.0.1", 0))
         self.port = self.listener.getsockname()[1]
         threading.Thread(target=self.accept, daemon=True).start()
@@ -117,7 +123,7 @@ class Proxy:
         with contextlib.suppress(OSError):
             while True:
                 host, _ = self.listener.accept()
-                printer = socket.create_connection(("127.0.0.1", self.target))
+                printer = socket.create_connection(("127.0.0.1", self.simulator.port))
                 for end in (host, printer):
                     end.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
                 self.sockets += [host, printer]
@@ -127,31 +133,87 @@ class Proxy:
     def pump(self, source, sink, from_printer):
         with contextlib.suppress(OSError):
             while data := source.recv(65536):
-                if not (from_printer and self.muted):
-                    sink.sendall(data)
+                if from_printer and self.muted:
+                    continue
+                if not from_printer:
+                    self.heard.append(data)
+                    if self.refill_wanted and b"=MR" in data:
+                        self.refill_wanted = False
+                        self.open.clear()
+                    self.open.wait()
+                step = 1 if self.crumbs and from_printer else len(data)
+                for place in range(0, len(data), step):
+                    sink.sendall(data[place:place + step])
         for end in (source, sink):
             with contextlib.suppress(OSError):
                 end.shutdown(socket.SHUT_RDWR)
         source.close()
 
+    def said(self):
+        """What linefeed has said so far, as ["?RS", "=MR1", "!GO", …]: of parameters only the first."""
+        frames = b"".join(self.heard).split(b"\r")[:-1]
+        return [frame.lstrip(b"\n")[2:].split(b"\t")[0].decode("ascii") for frame in frames]
+
     def mute(self):
         """From now on no answer of the printer comes through."""
         self.muted = True
 
+    def hold(self):
+        """From now on nothing that linefeed says comes through; it will, later."""
+        self.open.clear()
+
+    def hold_refill(self, patience_s=PATIENCE_S):
+        """Waits for the next refill and holds it, and everything behind it."""
+        self.refill_wanted = True
+        deadline = time.monotonic() + patience_s
+        while self.refill_wanted:
+            if time.monotonic() > deadline:
+                raise AssertionError(f"no refill within {patience_s} s")
+            time.sleep(0.001)
+
     def heal(self):
         self.muted = False
+        self.open.set()
 
     def cut(self):
         sockets, self.sockets = self.sockets, []
         for end in sockets:
             with contextlib.suppress(OSError):
                 end.shutdown(socket.SHUT_RDWR)
+        self.open.set()
 
     def close(self):
         with contextlib.suppress(OSError):
             self.listener.shutdown(socket.SHUT_RDWR)
         self.listener.close()
         self.cut()
+
+
+class Client:
+    """Somebody else who talks to the printer, or its panel: what it takes for a key pressed at a moment of the test's choice."""
+
+    def __init__(self, simulator):
+        self.socket = socket.create_connection(("127.0.0.1", simulator.port))
+        self.socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        self.answers = self.socket.makefile("rb")
+
+    def send(self, *frames):
+        self.socket.sendall(b"".join(b"^0" + frame.encode("latin-1") + b"\r" for frame in frames))
+
+    def ask(self, inquiry):
+        """Sends an inquiry and gives the answer's parameters."""
+        self.send(inquiry)
+        line = b""
+        while not (line.endswith(b"\r") and line.strip()):
+            byte = self.answers.read(1)
+            if not byte:
+                raise AssertionError("the printer has closed the connection")
+            line += byte
+        return line.strip()[5:].decode("latin-1").split("\t")
+
+    def close(self):
+        self.answers.close()
+        self.socket.close()
 
 
 class Job:
@@ -193,10 +255,15 @@ class TestCase(unittest.TestCase):
         self.addCleanup(simulator.kill)
         return simulator
 
-    def proxy(self, simulator):
-        proxy = Proxy(simulator.port)
+    def proxy(self, simulator, **keywords):
+        proxy = Proxy(simulator, **keywords)
         self.addCleanup(proxy.close)
         return proxy
+
+    def client(self, simulator):
+        client = Client(simulator)
+        self.addCleanup(client.close)
+        return client
 
     def command(self, file, printer, *options, spool=None):
         """`printer`: something with an address, an address, or None."""

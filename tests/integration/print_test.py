@@ -253,6 +253,20 @@ class Output(harness.TestCase):
         self.assertEqual([], printer.prints())
         self.assertEqual(0, printer.stop()["connections"])
 
+    def test_a_dry_run_tells_what_the_spool_knows(self):
+        file = self.write_csv(rows(names(60)))
+        printer = self.simulator("--rate", 500)
+        self.assert_done(self.print(file, printer, "--to", 20))
+        before = self.spool.read_bytes()
+        part = self.print(file, None, "--dry-run", "--from", 11, "--to", 30)
+        self.assert_done(part)
+        self.assertIn("dry run: 20 records (11-30) can be printed; nothing was sent\n"
+                      "job 1: 10 of them are printed; a run would begin with record 21\n", part.out)
+        whole = self.print(file, None, "--dry-run", "-o", "json").json()
+        self.assertEqual((60, 1, 20, 0, 21), tuple(whole[key] for key in ("records", "job", "printed", "in_doubt", "next")))
+        self.assertIsNone(self.print(file, None, "--dry-run", "--new-job", "-o", "json").json()["job"])
+        self.assertTrue(before == self.spool.read_bytes(), "nothing has changed")
+
     def test_progress_on_a_terminal(self):
         records = names(400)
         printer = self.simulator("--rate", 400)

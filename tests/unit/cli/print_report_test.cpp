@@ -58,11 +58,11 @@ protected:
     PrintReportTest& operator=(const PrintReportTest&) = delete;
 
     /// A run over the whole job whose ledger says the rest.
-    void run(const std::vector<std::pair<LedgerKind, RecordRange>>& rows) {
+    void run(const std::vector<std::pair<LedgerKind, RecordRange>>& rows, const std::string& evidence = {}) {
         const spool::RunId run = spool_->begin_run(job_.id, job_.records, "{}").value();
         std::vector<LedgerEntry> entries{{LedgerKind::intent, run, job_.records, {}}};
         for (const auto& [kind, range] : rows) {
-            entries.push_back({kind, run, range, {}});
+            entries.push_back({kind, run, range, evidence});
         }
         ASSERT_TRUE(spool_->append(job_.id, entries));
     }
@@ -120,6 +120,23 @@ TEST_F(PrintReportTest, shouldNameTheRecordsInDoubtAndDisarmThem) {
     EXPECT_NE(out.find("in doubt: 3  thr\\x1B[2Jee\n"), std::string::npos) << out;
     EXPECT_EQ(out.find('\x1b'), std::string::npos);
     EXPECT_EQ(err, "linefeed: stopped on request\n");
+}
+
+TEST_F(PrintReportTest, shouldAskForTheLastProductWhereItTells) {
+    run({{LedgerKind::printed, closed(1, 2)}, {LedgerKind::in_doubt, closed(3, 5)}});
+    const PrintReport doubtful = report(feeder::OutcomeCode::records_in_doubt);
+    EXPECT_NE(shown(doubtful, false).first.find("start again with --last-printed NUMBER"), std::string::npos);
+    EXPECT_TRUE(nlohmann::json::parse(shown(doubtful, true).first)["in_doubt_hole"].is_null());
+}
+
+TEST_F(PrintReportTest, shouldAskForEveryProductWhereTheLastDoesNotTell) {
+    run({{LedgerKind::printed, closed(1, 2)}, {LedgerKind::in_doubt, closed(3, 5)}}, R"({"restarted":true})");
+    const PrintReport doubtful = report(feeder::OutcomeCode::records_in_doubt);
+    const auto [out, err] = shown(doubtful, false);
+    EXPECT_NE(out.find("stopped and started again"), std::string::npos) << out;
+    EXPECT_NE(out.find("start again with --printed N-M,N"), std::string::npos) << out;
+    EXPECT_EQ(out.find("--last-printed"), std::string::npos) << out;
+    EXPECT_EQ(nlohmann::json::parse(shown(doubtful, true).first)["in_doubt_hole"], doubtful.doubt_hole);
 }
 
 TEST_F(PrintReportTest, shouldNotPromiseARecordWhoseFateIsOpen) {
