@@ -89,7 +89,7 @@ void Feeder::on_machine_status(const protocol::MachineStatus& status, Instant no
 }
 
 void Feeder::on_mail_status(const protocol::MailStatus& status, Instant now, Actions& out) {
-    mail_outstanding_ = std::max(0, mail_outstanding_ - 1);
+    mail_answered(now);
     mail_ = status;
     ++mail_reads_;
     switch (phase_) {

@@ -10,6 +10,7 @@
 #include "feeder/pacing.hpp"
 #include "feeder/refill.hpp"
 
+#include <array>
 #include <cstdint>
 #include <optional>
 
@@ -25,8 +26,8 @@ struct FeederSettings {
     BoundedList<std::uint32_t, 16> acknowledge;
     Duration status_interval = std::chrono::milliseconds{500}; ///< `?RS` while printing
     Duration retry_interval = std::chrono::milliseconds{20};   ///< between inquiries while waiting for a state
-    /// From the first fill to `!GO`: the first product may come at once, and its record must lie in the FIFO 3 ms before
-    /// (protocol, section 5).
+    /// From the first fill to `!GO`: the first product may come at once, and its record must lie in the FIFO 3 ms
+    /// before (protocol, section 5).
     Duration fill_lead = std::chrono::milliseconds{4};
     Duration flush_timeout = std::chrono::seconds{2};
     Duration verify_timeout = std::chrono::seconds{5};
@@ -121,6 +122,7 @@ private:
     // feeder_time.cpp: asking and waiting, and locate_step() of feeder.cpp
     void enter(Phase phase, Instant now, Duration timeout);
     void ask(protocol::Parameter what, Instant now, Actions& out);
+    void mail_answered(Instant now);
     void ask_later(protocol::Parameter what, Instant now);
     void locate_step(Instant now, Actions& out);
     void on_deadline(Instant now, Actions& out);
@@ -197,14 +199,17 @@ private:
 
     int mail_reads_ = 0; ///< `=SM` answers in this phase
     int identity_answers_missing_ = 0;
+    static constexpr int max_mail_outstanding = 10; ///< inquiries under way at once
+    std::array<Instant, 16> mail_asked_at_{};       ///< ring of the instants of the inquiries under way
+    std::size_t mail_oldest_ = 0;
     int mail_outstanding_ = 0;
     int counters_outstanding_ = 0;
     bool status_outstanding_ = false;
     std::optional<Instant> deadline_; ///< of the phase
     std::optional<Instant> retry_at_;
     protocol::Parameter retry_what_ = protocol::Parameter::RS;
-    std::optional<Instant> mail_due_;
-    std::optional<Instant> status_due_;
+    Instant mail_due_{};   ///< next `?SM` while printing
+    Instant status_due_{}; ///< next `?RS` while printing
     std::optional<Instant> go_due_;
 
     bool taking_over_ = false;

@@ -55,8 +55,7 @@ void Feeder::print_mail(Instant now, Actions& out) {
     if (phase_ == Phase::printing) {
         // Nothing waits for room once all is sent: only a printer without stop point must be caught quickly then.
         const Duration least = refill_.all_sent() && stop_would_show() ? settings_.retry_interval : Duration{0};
-        mail_due_ =
-            std::max(now, std::min(mail_due_.value_or(now), now + pacing_.poll_interval(refill_.level()))) + least;
+        mail_due_ = std::max(now, std::min(mail_due_, now + pacing_.poll_interval(refill_.level()))) + least;
     }
 }
 
@@ -102,8 +101,8 @@ void Feeder::confirm_reported(Actions& out) {
 }
 
 void Feeder::ask_for_proof(Instant now, Actions& out) {
-    const bool wanted = reported_through_ > confirmed_through_ && total_before_ && counter_proof_.wants_count(now);
-    if (wanted && phase_ == Phase::printing && counters_outstanding_ == 0) {
+    const bool wanted = reported_through_ > confirmed_through_ && counter_proof_.wants_count(now);
+    if (wanted && counters_outstanding_ == 0 && mail_outstanding_ < max_mail_outstanding) {
         ask(Parameter::CC, now, out);
         ask(Parameter::SM, now, out);
         ask(Parameter::SM, now, out);
@@ -204,7 +203,7 @@ void Feeder::insist_on_stop_point(Actions& out) {
 }
 
 void Feeder::refill_now(Actions& out) {
-    if ((phase_ != Phase::printing && phase_ != Phase::verifying) || suspected_since_) {
+    if (suspected_since_) {
         return;
     }
     if (const auto intent = refill_.next_intent()) {

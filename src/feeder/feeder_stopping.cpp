@@ -120,8 +120,8 @@ OutcomeCode Feeder::cause_of_stop() const {
     return status_.cover_open ? OutcomeCode::cover_open : OutcomeCode::stopped_at_printer;
 }
 
-/// Every record is printed, and the ledger is told so. What mailing leaves behind then (1223, or 5043 where no stop point
-/// is kept) is acknowledged: the printer would switch itself off otherwise (protocol, section 2).
+/// Every record is printed, and the ledger is told so. What mailing leaves behind then (1223, or 5043 where no stop
+/// point is kept) is acknowledged: the printer would switch itself off otherwise (protocol, section 2).
 void Feeder::finish(Instant now, Actions& out) {
     if (!is_mailing_error(status_.error)) {
         end(OutcomeCode::finished, out);
@@ -140,8 +140,6 @@ void Feeder::end(OutcomeCode code, Actions& out) {
     phase_ = Phase::ended;
     retry_at_.reset();
     deadline_.reset();
-    mail_due_.reset();
-    status_due_.reset();
     go_due_.reset();
     out.push_back(End{{code, status_.machine, status_.error, any_sent_}});
 }

@@ -7,19 +7,10 @@ namespace linefeed::feeder {
 
 using protocol::Parameter;
 
-namespace {
-
-/// Inquiries under way at once while printing: with a slow printer the answers are still as fresh as the beat.
-constexpr int max_mail_outstanding = 4;
-
-} // namespace
-
 void Feeder::enter(Phase phase, Instant now, Duration timeout) {
     phase_ = phase;
     mail_reads_ = 0;
     retry_at_.reset();
-    mail_due_.reset();
-    status_due_.reset();
     go_due_.reset();
     deadline_.reset();
     if (timeout != Duration::max()) {
@@ -29,6 +20,7 @@ void Feeder::enter(Phase phase, Instant now, Duration timeout) {
 
 void Feeder::ask(Parameter what, Instant now, Actions& out) {
     if (what == Parameter::SM) {
+        mail_asked_at_[(mail_oldest_ + static_cast<std::size_t>(mail_outstanding_)) % mail_asked_at_.size()] = now;
         ++mail_outstanding_;
         mail_due_ = now + pacing_.poll_interval(refill_.level());
     }
@@ -39,6 +31,16 @@ void Feeder::ask(Parameter what, Instant now, Actions& out) {
         ++counters_outstanding_;
     }
     out.push_back(Inquire{what});
+}
+
+/// Answers come in the order of the inquiries.
+void Feeder::mail_answered(Instant now) {
+    if (mail_outstanding_ == 0) {
+        return; // nobody asked
+    }
+    pacing_.answered_after(now - mail_asked_at_[mail_oldest_]);
+    mail_oldest_ = (mail_oldest_ + 1) % mail_asked_at_.size();
+    --mail_outstanding_;
 }
 
 void Feeder::ask_later(Parameter what, Instant now) {
@@ -108,10 +110,10 @@ void Feeder::on_time(Instant now, Actions& out) {
     if (phase_ != Phase::printing) {
         return;
     }
-    if (mail_due_ && now >= *mail_due_ && mail_outstanding_ < max_mail_outstanding) {
+    if (now >= mail_due_ && mail_outstanding_ < max_mail_outstanding) {
         ask(Parameter::SM, now, out);
     }
-    if (status_due_ && now >= *status_due_ && !status_outstanding_) {
+    if (now >= status_due_ && !status_outstanding_) {
         ask(Parameter::RS, now, out);
     }
 }

@@ -39,8 +39,8 @@ struct Outcome {
     OutcomeCode code = OutcomeCode::finished;
     protocol::MachineState machine = protocol::MachineState::standby; ///< as last reported
     protocol::PrinterError error{};                                   ///< as last reported
-    /// At least one record of this run may have gone out.
-    bool issued = false;
+    /// At least one record of this run may have gone out; if not, the ledger calls those it had granted unused.
+    bool issued = true;
 
     friend bool operator==(const Outcome&, const Outcome&) = default;
     friend std::ostream& operator<<(std::ostream& out, const Outcome& outcome);

@@ -25,10 +25,11 @@ void Pacing::printed(RecordCount count, Instant now) {
     if (size_ > 1 && now - samples_[newest].at < spacing) {
         return;
     }
-    while (size_ > 1 && (size_ == samples_kept || now - samples_[oldest_].at > window)) {
+    while (size_ > 1 && now - samples_[oldest_].at > window) {
         oldest_ = (oldest_ + 1) % samples_kept;
         --size_;
     }
+    LINEFEED_ASSERT(size_ < samples_kept); // the spacing sees to that
     samples_[(oldest_ + size_) % samples_kept] = {count, now};
     ++size_;
 }
@@ -52,10 +53,15 @@ bool Pacing::leaps(RecordCount count, Instant now) const {
     return static_cast<double>((count - newest.count).value()) > jitter + at_most * seconds;
 }
 
+void Pacing::answered_after(Duration round_trip) {
+    constexpr int memory = 16; // answers until a single slow one is as good as forgotten
+    round_trip_ = std::max(round_trip, round_trip_ - round_trip_ / memory);
+}
+
 Duration Pacing::poll_interval(RecordCount level) const {
     using Seconds = std::chrono::duration<double>;
-    const double seconds_to_empty = static_cast<double>(level.value()) / std::max(rate(), settings_.burst_rate);
-    const Seconds wanted{seconds_to_empty / settings_.polls_per_buffer};
+    const Seconds to_empty{static_cast<double>(level.value()) / std::max(rate(), settings_.burst_rate)};
+    const Seconds wanted = (to_empty - round_trip_ - settings_.lead) / settings_.polls_per_buffer;
     if (wanted >= Seconds{settings_.poll_max}) {
         return settings_.poll_max; // before the cast: the wish of a very slow line may not fit in a Duration
     }

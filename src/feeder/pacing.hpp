@@ -18,6 +18,8 @@ struct PacingSettings {
     double burst_rate = 1000.0;
     /// Polls in the time in which the buffer would run empty.
     double polls_per_buffer = 8.0;
+    /// A record must lie in the FIFO so long before its PrintGo (protocol, section 5).
+    Duration lead = std::chrono::milliseconds{3};
 };
 
 /// Measures the print rate and derives the beat from it. Flow: restart() when printing begins, printed() for every
@@ -34,6 +36,8 @@ public:
     [[nodiscard]] double rate() const;
     /// `count` is clearly more than the line can have printed since the last answer: records may have been skipped.
     [[nodiscard]] bool leaps(RecordCount count, Instant now) const;
+    /// An answer took this long: a refill is late by as much, so the buffer holds that much less.
+    void answered_after(Duration round_trip);
     /// How long after one inquiry the next is due, with `level` records in the printer at most.
     [[nodiscard]] Duration poll_interval(RecordCount level) const;
     /// Whether `credit` records should be sent now, or rather be collected into a larger block.
@@ -48,6 +52,7 @@ private:
     static constexpr Duration window = std::chrono::seconds{1};
 
     PacingSettings settings_;
+    Duration round_trip_{0}; ///< of late; falls slowly
     std::array<Sample, samples_kept> samples_{};
     std::size_t oldest_ = 0;
     std::size_t size_ = 0;

@@ -1,5 +1,6 @@
 #include "link/tcp_link.hpp"
 
+#include <algorithm>
 #include <span>
 #include <utility>
 
@@ -7,6 +8,15 @@ namespace linefeed::link {
 
 namespace asio = boost::asio;
 using boost::system::error_code;
+
+namespace {
+
+template <typename Kind>
+bool has(const session::Effects& effects) {
+    return std::ranges::any_of(effects, [](const auto& effect) { return std::holds_alternative<Kind>(effect); });
+}
+
+} // namespace
 
 TcpLink::TcpLink(asio::io_context& context, session::Session& session, EffectHandler& handler)
     : socket_(context)
@@ -96,23 +106,18 @@ void TcpLink::read() {
 
 void TcpLink::carry_out(session::Effects& effects) {
     while (!effects.empty()) {
-        bool write = false;
-        bool closing = false;
+        // The printer first: nothing else is as urgent, and nothing else waits for the write to be done.
+        const bool written = has<session::Write>(effects) && open_ && write();
         for (const session::Effect& effect : effects) {
-            if (std::holds_alternative<session::Write>(effect)) {
-                write = true;
-            } else if (std::holds_alternative<session::CloseLink>(effect)) {
-                closing = true;
-            } else {
+            if (!std::holds_alternative<session::Write>(effect) &&
+                !std::holds_alternative<session::CloseLink>(effect)) {
                 handler_.on_effect(effect);
             }
         }
+        const bool closing = has<session::CloseLink>(effects);
         effects.clear();
-        if (write && open_) {
-            begin_write();
-            if (continue_write()) {
-                session_.on_written(now(), effects);
-            }
+        if (written) {
+            session_.on_written(now(), effects);
         }
         if (closing) {
             close();
@@ -122,13 +127,14 @@ void TcpLink::carry_out(session::Effects& effects) {
     arm_timer();
 }
 
-void TcpLink::begin_write() {
+bool TcpLink::write() {
     const session::WritePieces pieces = session_.pieces();
     write_next_ = 0;
     write_end_ = 0;
     for (const std::string_view piece : pieces) {
         write_buffers_[write_end_++] = asio::buffer(piece);
     }
+    return continue_write();
 }
 
 bool TcpLink::continue_write() {

@@ -53,7 +53,8 @@ private:
     void connected();
     void read();
     void carry_out(session::Effects& effects);
-    void begin_write();
+    /// Begins to write what the session has. True when the write is complete.
+    [[nodiscard]] bool write();
     /// Writes as much as the socket takes. True when the write is complete.
     [[nodiscard]] bool continue_write();
     void wait_until_writable();

@@ -180,7 +180,7 @@ void Session::on_storage_failed(Instant now, Effects& out) {
 
 void Session::on_page(const RecordPage* page, Instant now, Effects& out) {
     pages_.add(page);
-    if (end_ || closed_) {
+    if (end_) {
         release_pages(out);
         return;
     }

@@ -59,7 +59,7 @@ void Conveyor::passed(Instant now) {
     LINEFEED_ASSERT(due_ && *due_ <= now);
     if (stalled(now)) {
         note_stall(now);
-        if (now - *due_ > from_ns(period_ns_)) {
+        if (!settings_.keeps_grid && now - *due_ > from_ns(period_ns_)) {
             anchor_ = now;
             steps_ = 0;
         }

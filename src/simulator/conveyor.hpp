@@ -16,6 +16,7 @@ struct ConveyorSettings {
     double jitter_percent = 0; ///< of the period, each way: 0…100
     std::uint64_t seed = 1;    ///< of the jitter
     bool free_running = false; ///< moves also while the printer does not print
+    bool keeps_grid = false;   ///< what a stall of the platform has delayed is made up for, however much it is
     Duration start_delay =
         std::chrono::milliseconds{20}; ///< from print start to the first product, if longer than a period
 };

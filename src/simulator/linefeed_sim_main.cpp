@@ -1,6 +1,6 @@
 // linefeed-sim: a JET printer with a conveyor, for training, tests and acceptance without hardware. Reads the command
 // line, runs the simulator, tells the summary. Exit codes: 0 done, 1 cannot run, 2 usage.
-#include "simulator/simulator.hpp"
+#include "simulator/fleet.hpp"
 
 #include <CLI/CLI.hpp>
 
@@ -19,6 +19,7 @@ using namespace linefeed::simulator;
 
 constexpr int exit_failed = 1;
 constexpr int exit_usage = 2;
+constexpr unsigned max_printers = 256;
 constexpr double max_rate = 100000;
 constexpr double max_milliseconds = 3600000;
 constexpr double max_jitter_percent = 100;
@@ -44,6 +45,8 @@ struct Options {
     bool standby = false;
     bool nozzle_closed = false;
     std::string summary_json;
+    std::string report;
+    unsigned printers = 1;
 };
 
 Duration from_ms(double ms) {
@@ -151,6 +154,11 @@ void add_run_options(CLI::App& app, Options& typed, SimulatorSettings& settings)
     app.add_option("--summary-json", typed.summary_json, "The summary as JSON: to FILE, or without FILE to stdout")
         ->expected(0, 1)
         ->default_str("-");
+    app.add_option("--printers", typed.printers, "So many printers, on consecutive ports")
+        ->check(CLI::Range(1U, max_printers));
+    app.add_option("--report", typed.report,
+                   "For benchmarks: lead times, misses and stalls as JSON to FILE. PrintGos keep to their grid, and a "
+                   "product without a record in time is counted and stops nothing");
 }
 
 void set_address(SimulatorSettings& settings, const std::string& listen) {
@@ -231,6 +239,10 @@ void set_everything(SimulatorSettings& settings, const Options& typed, bool prin
         refuse("--charset", "latin1, windows-1252 or unicode-hex expected, not \"" + typed.charset + "\"");
     }
     settings.charset = *charset;
+    settings.count_misses = settings.conveyor.keeps_grid = !typed.report.empty();
+    if (typed.printers > 1 && (settings.tape || typed.exit_when_idle > 0)) {
+        refuse("--printers", "more than one exclude --tape and --exit-when-idle");
+    }
     settings.server.escapes = settings.printer.profile.escapes;
     settings.server.reply_delay = from_ms(typed.reply_delay_ms);
     settings.conveyor.start_delay = from_ms(typed.start_delay_ms);
@@ -260,17 +272,26 @@ int fail(const std::string& message) {
     return exit_failed;
 }
 
-/// The summary on stdout; as JSON too or instead, as ordered.
-int tell(const RunStatistics& run, bool json_wanted, const std::string& json_file) {
+/// The summaries on stdout; as JSON too or instead, as ordered: an object, of several printers an array.
+int tell(const std::vector<const RunStatistics*>& runs, bool json_wanted, const std::string& json_file) {
+    std::string all;
+    for (const RunStatistics* one : runs) {
+        all.append(all.empty() ? "" : ",\n").append(summary_json(*one));
+    }
+    if (runs.size() > 1) {
+        all = "[" + all + "]";
+    }
     if (json_wanted && json_file == "-") {
-        std::cout << summary_json(run) << std::endl;
+        std::cout << all << std::endl;
         return 0;
     }
-    write_summary(std::cout, run);
+    for (const RunStatistics* one : runs) {
+        write_summary(std::cout, *one);
+    }
     std::cout.flush();
     if (json_wanted) {
         std::ofstream file{json_file};
-        file << summary_json(run) << '\n';
+        file << all << '\n';
         if (!file.flush()) {
             return fail("cannot write the summary " + json_file);
         }
@@ -278,16 +299,19 @@ int tell(const RunStatistics& run, bool json_wanted, const std::string& json_fil
     return 0;
 }
 
-int run(const SimulatorSettings& settings, bool json_wanted, const std::string& json_file) {
-    Simulator simulator{settings};
-    const auto address = simulator.open();
-    if (!address) {
-        return fail(address.error().message);
+int run(const SimulatorSettings& settings, const Options& typed, bool json_wanted) {
+    Fleet fleet{settings, {typed.printers, typed.report.empty() ? std::nullopt : std::optional{typed.report}}};
+    const auto addresses = fleet.open();
+    if (!addresses) {
+        return fail(addresses.error().message);
     }
-    std::cout << "linefeed-sim: listening on " << *address << std::endl;
-    const auto ended = simulator.run();
-    const int told = tell(simulator.statistics(), json_wanted, json_file);
-    return ended ? told : fail(ended.error().message);
+    for (const std::string& address : *addresses) {
+        std::cout << "linefeed-sim: listening on " << address << std::endl;
+    }
+    const auto ended = fleet.run();
+    const int told = tell(fleet.statistics(), json_wanted, typed.summary_json.empty() ? "-" : typed.summary_json);
+    const auto reported = fleet.write_report();
+    return !ended ? fail(ended.error().message) : !reported ? fail(reported.error().message) : told;
 }
 
 } // namespace
@@ -313,7 +337,7 @@ int main(int argc, char** argv) {
     }
     try {
         const bool json_wanted = app.count("--summary-json") > 0;
-        return run(settings, json_wanted, typed.summary_json.empty() ? "-" : typed.summary_json);
+        return run(settings, typed, json_wanted);
     } catch (const std::exception& error) {
         return fail(error.what());
     }

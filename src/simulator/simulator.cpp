@@ -9,6 +9,9 @@
 namespace linefeed::simulator {
 namespace {
 
+/// Room for so many lead times is made before the run.
+constexpr std::size_t kept_lead_times = 1U << 20U;
+
 using boost::system::error_code;
 
 /// What to add to the monotonic clock to get the wall clock, taken once: the tape's times never jump.
@@ -27,12 +30,24 @@ PrinterSettings with_wall_clock(PrinterSettings settings) {
 } // namespace
 
 Simulator::Simulator(SimulatorSettings settings)
+    : Simulator(std::move(settings), std::make_unique<boost::asio::io_context>(1)) {}
+
+Simulator::Simulator(SimulatorSettings settings, std::unique_ptr<boost::asio::io_context> own_io)
+    : Simulator(std::move(settings), *own_io) {
+    own_io_ = std::move(own_io);
+}
+
+Simulator::Simulator(SimulatorSettings settings, boost::asio::io_context& io)
     : settings_(std::move(settings))
+    , io_(io)
     , model_(with_wall_clock(settings_.printer), steady_now())
     , conveyor_(settings_.conveyor)
     , server_(io_, *this, settings_.server) {
     wall_minus_steady_ns_ = wall_minus_steady_ns();
     statistics_.depth = settings_.printer.depth;
+    if (settings_.count_misses) {
+        lead_times_.emplace().reserve(kept_lead_times);
+    }
 }
 
 Result<std::string> Simulator::open() {
@@ -48,6 +63,12 @@ Result<std::string> Simulator::open() {
 }
 
 Result<void> Simulator::run() {
+    start();
+    io_.run();
+    return finish();
+}
+
+void Simulator::start() {
     signals_.add(SIGINT);
     signals_.add(SIGTERM);
     signals_.async_wait([this](const error_code& error, int) {
@@ -57,7 +78,9 @@ Result<void> Simulator::run() {
     });
     wait_for_idleness();
     move_conveyor(steady_now());
-    io_.run();
+}
+
+Result<void> Simulator::finish() {
     statistics_.platform_stalls = conveyor_.stalls();
     statistics_.longest_stall = conveyor_.longest_stall();
     return tape_ ? tape_->close() : Result<void>{};
@@ -79,7 +102,11 @@ void Simulator::on_connected(ConnectionId) {
 }
 
 void Simulator::on_frame(ConnectionId connection, const protocol::Frame& frame, Instant now) {
+    const bool was_empty = model_.fifo().records() == 0;
     model_.receive(connection, frame, now);
+    if (lead_times_ && was_empty && model_.fifo().records() > 0) {
+        lead_times_->arrived(now);
+    }
     statistics_.note_fill(model_.fifo().records());
     carry_out(now);
 }
@@ -128,6 +155,9 @@ void Simulator::carry_out_one(Effect& effect) {
 
 void Simulator::record(const Printed& print) {
     statistics_.add(print);
+    if (lead_times_ && print.lead_time) {
+        lead_times_->printed(print.time, *print.lead_time);
+    }
     if (tape_) {
         const std::int64_t time_ns = wall_minus_steady_ns_ + print.time.time_since_epoch().count();
         tape_->write(tape_line(time_ns, print.number, to_utf8(print.text, settings_.charset)));
@@ -204,7 +234,11 @@ void Simulator::product_at_sensor() {
     if (!due || *due > now) {
         return; // what was read stopped the line or started it anew; its timer is set
     }
-    if (conveyor_.stalled(now) && model_.printing() && !model_.record_ready(now)) {
+    if (lead_times_ && counted_as_miss(now, *due)) {
+        carry_out(now);
+        return;
+    }
+    if (!lead_times_ && conveyor_.stalled(now) && model_.printing() && !model_.record_ready(now)) {
         conveyor_.postpone(now, settings_.printer.margin);
         wait_for_product();
         return;
@@ -220,6 +254,23 @@ void Simulator::product_at_sensor() {
         statistics_.note_fill_at_print_go(fill);
     }
     carry_out(now);
+}
+
+/// Whether the product passes unprinted because no record is there in time.
+bool Simulator::counted_as_miss(Instant now, Instant due) {
+    if (conveyor_.stalled(now)) {
+        lead_times_->late(due, now);
+    }
+    model_.advance(now); // the print before it may end the printing
+    if (!model_.printing() || model_.record_ready(now)) {
+        return false;
+    }
+    const MailSlot* loaded = model_.fifo().loaded();
+    lead_times_->missed(now, now - due, loaded == nullptr ? std::nullopt : std::optional{loaded->arrived});
+    ++statistics_.unprinted_products;
+    ++products_;
+    conveyor_.passed(now);
+    return true;
 }
 
 void Simulator::wait_for_model() {

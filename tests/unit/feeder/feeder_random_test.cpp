@@ -42,7 +42,7 @@ public:
     [[nodiscard]] int ends() const { return ends_; }
     /// Inquiries that a session has not answered yet.
     std::vector<protocol::Parameter> inquiries;
-    std::size_t inquiries_at_most = 16;
+    std::size_t inquiries_at_most = 24;
 
 private:
     void check_one(std::monostate) { FAIL() << "nothing"; }
@@ -141,7 +141,7 @@ public:
 
     /// `orderly` = answers come only to inquiries, as from a session; else anything comes at any time.
     void run(bool orderly) {
-        rules_.inquiries_at_most = orderly ? 16 : 1000;
+        rules_.inquiries_at_most = orderly ? 24 : 1000;
         tell([this](Actions& out) { feeder_.start(now_, out); });
         for (int step = 0; step < 600 && !testing::Test::HasFatalFailure(); ++step) {
             now_ += std::chrono::milliseconds{draw(3) == 0 ? draw(300) : draw(3)};

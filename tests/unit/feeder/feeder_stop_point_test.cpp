@@ -139,6 +139,35 @@ TEST(FeederStopPoint, shouldFindTheEndMarkerPrintedOnlyWhenJudging) {
     story.expect("settle this run: printed 101-110, in doubt none, unused none by mail status; !EQ; ?RS");
 }
 
+TEST(FeederStopPoint, shouldTakeTheEndMarkerForProofThoughNoNumberOfTheRunWasSeen) {
+    Story story;
+    story.arm_to_grant();
+    story.granted(101, 102, 102);
+    story.sm(0, 77, 0);
+    story.sm(0, 77, 0);
+    story.sm(0, 77, 0);
+    story.supplied(102);
+    story.sm(1, 77, 0);
+    story.wait(milliseconds{4});
+    story.rs(State::printing);
+    for (int answers = 0; answers < 7; ++answers) {
+        story.sm(1, 77, 0);
+    }
+    EXPECT_NE(story.take().find("end marker 103"), std::string::npos);
+    story.rs(State::ready_to_print, raw_error(5043));
+    story.judge(0, 103, true, 1003, raw_error(5043));
+    story.expect("settle this run: printed 101-102, in doubt none, unused none by mail status; !EQ; ?RS");
+}
+
+TEST(FeederStopPoint, shouldCountOnlyOnceAtATime) {
+    Story story = printing_without_stop_point();
+    story.sm(3, 77, 0);
+    story.sm(3, 101, 0);
+    EXPECT_NE(story.take().find("?CC; ?SM; ?SM"), std::string::npos);
+    story.sm(3, 102, 0);
+    EXPECT_EQ(story.take().find("?CC"), std::string::npos) << "the answer is still under way";
+}
+
 TEST(FeederStopPoint, shouldNotTakeANumberFromBeforeTheRunForItsEndMarker) {
     Story story;
     story.identify();

@@ -301,6 +301,18 @@ TEST(FeederStopping, shouldFinishOverAnUnderstoodErrorWhenAllIsPrinted) {
     story.expect(ended(OutcomeCode::finished));
 }
 
+TEST(FeederStopping, shouldNotBelieveTheEndMessageOfAPrinterThatWasStartedAgain) {
+    Story story = reach(Phase::printing);
+    story.sm(1, 104, 110);
+    story.sm(1, 108, 110);
+    story.stop();
+    story.rs(State::ready_to_print);
+    story.rs(State::printing); // somebody has started it: what it printed before and since is to be counted
+    story.take();
+    story.judge(0, 110, true, 1008, end_message);
+    EXPECT_NE(story.take().find("printed none, in doubt 109-110, unused none by no evidence"), std::string::npos);
+}
+
 TEST(FeederStopping, shouldLeaveAnErrorAloneThatIsNotOfMailing) {
     Story story = reach(Phase::printing);
     story.sm(1, 104, 110);

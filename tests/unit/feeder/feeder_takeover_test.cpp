@@ -162,6 +162,28 @@ TEST(FeederTakeover, shouldHaltWhenSomethingElseWasPrinted) {
     story.expect("?SM");
 }
 
+TEST(FeederTakeover, shouldHaltAPrinterThatHasPrintedNoneOfTheRunYet) {
+    FeederPlan plan = takeover_plan();
+    plan.open->first = RecordNumber{160};
+    plan.open->printed_through = RecordNumber{159};
+    plan.open->last_printed_before = RecordNumber{150};
+    Story story = found_printing(plan);
+    story.expect(halted); // only the number of a record of the run tells where it is
+}
+
+TEST(FeederTakeover, shouldDoWithoutTheCounter) {
+    Story story{quick_settings(), takeover_plan()};
+    story.reported_depth = 16;
+    story.identify(State::printing);
+    story.sm(3, 150, 200);
+    story.sm(3, 150, 200);
+    story.no_answer(protocol::Parameter::CC);
+    story.sm(2, 151, 200);
+    story.take();
+    story.sm(2, 151, 200);
+    story.expect("adopt run, printed through 151, sent through 154");
+}
+
 TEST(FeederTakeover, shouldStopThePrinterOnRequestWhileItIsTakenOver) {
     Story story = found_printing();
     story.sm(2, 151, 200);

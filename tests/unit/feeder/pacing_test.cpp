@@ -67,8 +67,8 @@ TEST(Pacing, shouldForgetTheRateOnRestart) {
 TEST(Pacing, shouldPollSeveralTimesInTheTimeToEmpty) {
     const Pacing pacing{PacingSettings{.burst_rate = 1000.0, .polls_per_buffer = 8.0}};
     // 200 records at 1000 a second last 200 ms.
-    EXPECT_EQ(pacing.poll_interval(RecordCount{200}), milliseconds{25});
-    EXPECT_EQ(pacing.poll_interval(RecordCount{16}), milliseconds{2});
+    EXPECT_EQ(pacing.poll_interval(RecordCount{203}), milliseconds{25}) << "the last 3 ms are lost";
+    EXPECT_EQ(pacing.poll_interval(RecordCount{19}), milliseconds{2});
 }
 
 TEST(Pacing, shouldKeepTheIntervalBetweenItsBounds) {
@@ -92,7 +92,22 @@ TEST(Pacing, shouldPollAFastLineMoreOftenThanItsBurstRate) {
     pacing.restart(start);
     run(pacing, 4000, seconds{2}, milliseconds{5});
     const Duration interval = pacing.poll_interval(RecordCount{256});
-    EXPECT_NEAR(static_cast<double>(std::chrono::duration_cast<microseconds>(interval).count()), 8000.0, 200.0);
+    EXPECT_NEAR(static_cast<double>(std::chrono::duration_cast<microseconds>(interval).count()), 7625.0, 200.0);
+}
+
+TEST(Pacing, shouldPollMoreOftenWhenAnswersAreSlow) {
+    Pacing pacing{PacingSettings{}};
+    EXPECT_EQ(pacing.poll_interval(RecordCount{103}), microseconds{12500});
+    pacing.answered_after(milliseconds{20});
+    EXPECT_EQ(pacing.poll_interval(RecordCount{103}), milliseconds{10});
+    pacing.answered_after(milliseconds{1});
+    EXPECT_LT(pacing.poll_interval(RecordCount{103}), microseconds{10200}) << "a slow answer is remembered for a while";
+    for (int answers = 0; answers < 200; ++answers) {
+        pacing.answered_after(milliseconds{1});
+    }
+    EXPECT_EQ(pacing.poll_interval(RecordCount{104}), microseconds{12500});
+    pacing.answered_after(milliseconds{500});
+    EXPECT_EQ(pacing.poll_interval(RecordCount{103}), milliseconds{1}) << "no time is left at all";
 }
 
 TEST(Pacing, shouldCollectBlocksOnlyWhenTheBufferIsComfortable) {

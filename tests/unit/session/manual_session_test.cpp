@@ -67,7 +67,7 @@ public:
     explicit ManualSession(const Wire& wire)
         : wire_(wire) {
         SessionSettings settings;
-        settings.feeder.pacing.poll_min = std::chrono::milliseconds{1};
+        settings.feeder.pacing.poll_min = std::chrono::milliseconds{20}; // a line of 2500 prints a second
         host_ = std::make_unique<Conversation>(settings);
     }
 

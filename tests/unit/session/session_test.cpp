@@ -159,6 +159,20 @@ TEST(Session, shouldTakePagesThatComeBeforeTheGrant) {
     EXPECT_NE(sent.find("^0=MR10\trecord 10\n^0?SM\n"), std::string::npos);
 }
 
+TEST(Session, shouldTakeAGrantThatComesBehindTheEnd) {
+    const auto pages = make_pages(1, 10, 10, plain_text);
+    Conversation host;
+    host.connect();
+    host.receive(not_printing + "^0=VS1\r^0=JLA\r" + mail(0, 0, 0) + mail(0, 0, 0) + "^0=CC0\t0\t0\r");
+    host.writes_complete_at_once = false;
+    host.page(*pages[0]);
+    host.stop();
+    host.sent();
+    host.grant(1, 10);
+    EXPECT_EQ(host.sent(), "");
+    EXPECT_EQ(host.pages_released, pages.size());
+}
+
 TEST(Session, shouldEndWhenTheLedgerRefuses) {
     Conversation host;
     host.connect();
