@@ -39,11 +39,8 @@ std::string JobRun::start() {
 }
 
 void JobRun::request_stop() {
-    asio::post(context_, [this] {
-        if (!finished()) {
-            link_.call([](Session& session, Instant at, Effects& effects) { session.request_stop(at, effects); });
-        }
-    });
+    stop_requested_.store(true, std::memory_order_release);
+    store_.replies_signal().notify();
 }
 
 void JobRun::join() {
@@ -157,9 +154,16 @@ void JobRun::wait_for_replies() {
             return;
         }
         store_.replies_signal().clear();
+        take_stop_request();
         take_replies();
         wait_for_replies();
     });
+}
+
+void JobRun::take_stop_request() {
+    if (stop_requested_.exchange(false, std::memory_order_acquire) && !finished()) {
+        link_.call([](Session& session, Instant at, Effects& effects) { session.request_stop(at, effects); });
+    }
 }
 
 void JobRun::take_replies() {

@@ -70,6 +70,7 @@ private:
     void on_unreachable(const std::string& reason) override;
     void on_progress() override;
     void wait_for_replies();
+    void take_stop_request();
     void take_replies();
     void push(const StoreRequest& request);
     void push_cumulative();
@@ -77,7 +78,8 @@ private:
 
     JobRunSettings settings_;
     Store store_;
-    boost::asio::io_context context_{1};
+    /// Of the feed thread alone, so it never locks: other threads come in through the rings and stop_requested_.
+    boost::asio::io_context context_{BOOST_ASIO_CONCURRENCY_HINT_UNSAFE};
     session::Session session_;
     link::TcpLink link_;
     boost::asio::posix::stream_descriptor replies_;
@@ -88,6 +90,7 @@ private:
 
     boost::lockfree::spsc_queue<feeder::Notice, boost::lockfree::capacity<64>> notices_;
     EventSignal news_;
+    std::atomic<bool> stop_requested_{false}; ///< set by any thread, with the store's replies_signal()
     std::atomic<bool> printing_{false};
     std::atomic<std::uint64_t> range_{0}; ///< first << 32 | last; 0 = none
     std::atomic<std::uint32_t> printed_through_{0};

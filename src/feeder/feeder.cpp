@@ -110,6 +110,9 @@ void Feeder::on_mail_status(const protocol::MailStatus& status, Instant now, Act
     case Phase::verifying:
         verify(now, out);
         return;
+    case Phase::starting:
+        start_mail(now, out);
+        return;
     case Phase::printing:
         print_mail(now, out);
         return;
@@ -120,7 +123,6 @@ void Feeder::on_mail_status(const protocol::MailStatus& status, Instant now, Act
     case Phase::acknowledging:
     case Phase::granting:
     case Phase::loading:
-    case Phase::starting:
     case Phase::stopping:
     case Phase::recording:
     case Phase::finishing:
@@ -152,7 +154,7 @@ void Feeder::locate_step(Instant now, Actions& out) {
 void Feeder::on_counters(const protocol::Counters& counters, Instant now, Actions& out) {
     facts_.total_prints = counters.total;
     counters_outstanding_ = std::max(0, counters_outstanding_ - 1);
-    if (phase_ == Phase::printing) {
+    if (polls()) {
         print_counters(now, out);
         return;
     }
@@ -211,7 +213,7 @@ void Feeder::on_durable(RecordNumber through, Instant now, Actions& out) {
         return;
     }
     refill_.durable(through);
-    if (phase_ == Phase::printing) {
+    if (polls()) {
         refill_now(out);
     }
     try_loading(now, out);
@@ -222,7 +224,7 @@ void Feeder::on_supplied(RecordNumber through, Instant now, Actions& out) {
         return;
     }
     refill_.supplied(through);
-    if (phase_ == Phase::printing) {
+    if (polls()) {
         refill_now(out);
     }
     try_loading(now, out);

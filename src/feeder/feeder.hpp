@@ -126,6 +126,7 @@ private:
     void ask_later(protocol::Parameter what, Instant now);
     void locate_step(Instant now, Actions& out);
     void on_deadline(Instant now, Actions& out);
+    [[nodiscard]] bool polls() const { return phase_ == Phase::printing || (phase_ == Phase::starting && !go_due_); }
     [[nodiscard]] bool has_granted_records() const { return !refill_.range().empty(); }
 
     // feeder_arming.cpp: from the connection to the first print
@@ -140,6 +141,7 @@ private:
     void try_loading(Instant now, Actions& out);
     void verify(Instant now, Actions& out);
     void go(Instant now, Actions& out);
+    void start_mail(Instant now, Actions& out);
     void start_answered(Instant now, Actions& out);
     [[nodiscard]] bool may_acknowledge(const protocol::PrinterError& error) const;
 
@@ -154,6 +156,8 @@ private:
     // feeder_printing.cpp: reports, refills and the stop point
     void print_status(Instant now, Actions& out);
     void print_mail(Instant now, Actions& out);
+    [[nodiscard]] bool follow(Instant now, Actions& out);
+    void poll_on(Instant now);
     [[nodiscard]] bool take_report(Instant now, Actions& out);
     void confirm_reported(Actions& out);
     void ask_for_proof(Instant now, Actions& out);

@@ -205,21 +205,38 @@ void Feeder::verify(Instant now, Actions& out) {
 
 void Feeder::go(Instant now, Actions& out) {
     enter(Phase::starting, now, settings_.start_timeout);
+    pacing_.restart(now);
     out.push_back(Command{protocol::Action::start_print});
     ask(Parameter::RS, now, out);
+    ask(Parameter::SM, now, out);
+}
+
+/// The first products may be through before the answer that it prints: the refill does not wait for that.
+void Feeder::start_mail(Instant now, Actions& out) {
+    if (go_due_) {
+        return; // asked about the fill
+    }
+    if (!stop_would_show() || mail_.stop_at == refill_.range().last()) {
+        static_cast<void>(follow(now, out));
+    }
+    poll_on(now);
 }
 
 void Feeder::start_answered(Instant now, Actions& out) {
+    if (go_due_) {
+        return; // nobody asked
+    }
     if (status_.machine == MachineState::printing) {
         enter(Phase::printing, now, Duration::max());
-        pacing_.restart(now);
         out.push_back(Notice{NoticeCode::printing_started, {}});
         if (stop_point_ == StopPoint::unset) {
             out.push_back(SetStopAt{refill_.range().last()});
             ++stop_point_tries_;
         }
         status_due_ = now + settings_.status_interval;
-        ask(Parameter::SM, now, out);
+        if (mail_outstanding_ == 0) {
+            ask(Parameter::SM, now, out);
+        }
         return;
     }
     if (!status_.error.none() && status_.error.raw != error_noticed_) {
@@ -229,6 +246,10 @@ void Feeder::start_answered(Instant now, Actions& out) {
         }
         out.push_back(Notice{NoticeCode::printer_warning, status_.error});
         error_noticed_ = status_.error.raw;
+    }
+    if (reported_through_ == refill_.range().last()) {
+        begin_judging(now, out); // a short run that is over already
+        return;
     }
     ask_later(Parameter::RS, now);
 }

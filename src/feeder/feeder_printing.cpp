@@ -40,23 +40,32 @@ void Feeder::print_status(Instant now, Actions& out) {
 }
 
 void Feeder::print_mail(Instant now, Actions& out) {
-    if (!stop_point_vanished(now, out)) {
-        if (!take_report(now, out)) {
-            return;
-        }
-        pacing_.printed(refill_.printed_through() - refill_.range().first().previous(), now);
-        insist_on_stop_point(out);
-        refill_now(out);
-        ask_for_proof(now, out);
-        if (reported_through_ == refill_.range().last()) {
-            all_printed(now, out);
-        }
+    if (!stop_point_vanished(now, out) && follow(now, out) && reported_through_ == refill_.range().last()) {
+        all_printed(now, out);
     }
     if (phase_ == Phase::printing) {
-        // Nothing waits for room once all is sent: only a printer without stop point must be caught quickly then.
-        const Duration least = refill_.all_sent() && stop_would_show() ? settings_.retry_interval : Duration{0};
-        mail_due_ = std::max(now, std::min(mail_due_, now + pacing_.poll_interval(refill_.level()))) + least;
+        poll_on(now);
     }
+}
+
+/// Takes the report and refills. False if the line is being stopped because of it.
+bool Feeder::follow(Instant now, Actions& out) {
+    if (!take_report(now, out)) {
+        return false;
+    }
+    pacing_.printed(refill_.printed_through() - refill_.range().first().previous(), now);
+    if (phase_ == Phase::printing) {
+        insist_on_stop_point(out);
+    }
+    refill_now(out);
+    ask_for_proof(now, out);
+    return true;
+}
+
+void Feeder::poll_on(Instant now) {
+    // Nothing waits for room once all is sent: only a printer without stop point must be caught quickly then.
+    const Duration least = refill_.all_sent() && stop_would_show() ? settings_.retry_interval : Duration{0};
+    mail_due_ = std::max(now, std::min(mail_due_, now + pacing_.poll_interval(refill_.level()))) + least;
 }
 
 /// The end marker's number may have been there before the run: then it is no proof.

@@ -107,13 +107,10 @@ void Feeder::on_time(Instant now, Actions& out) {
     if (go_due_ && now >= *go_due_) {
         go(now, out);
     }
-    if (phase_ != Phase::printing) {
-        return;
-    }
-    if (now >= mail_due_ && mail_outstanding_ < max_mail_outstanding) {
+    if (polls() && now >= mail_due_ && mail_outstanding_ < max_mail_outstanding) {
         ask(Parameter::SM, now, out);
     }
-    if (now >= status_due_ && !status_outstanding_) {
+    if (phase_ == Phase::printing && now >= status_due_ && !status_outstanding_) {
         ask(Parameter::RS, now, out);
     }
 }
@@ -128,13 +125,11 @@ std::optional<Instant> Feeder::next_wake() const {
     consider(deadline_);
     consider(retry_at_);
     consider(go_due_);
-    if (phase_ == Phase::printing) {
-        if (mail_outstanding_ < max_mail_outstanding) {
-            consider(mail_due_);
-        }
-        if (!status_outstanding_) {
-            consider(status_due_);
-        }
+    if (polls() && mail_outstanding_ < max_mail_outstanding) {
+        consider(mail_due_);
+    }
+    if (phase_ == Phase::printing && !status_outstanding_) {
+        consider(status_due_);
     }
     return wake;
 }

@@ -6,8 +6,10 @@
 namespace linefeed::simulator {
 
 void LeadTimeLog::printed(Instant at, Duration lead) {
-    leads_.push_back(lead);
-    sorted_ = false;
+    if (++prints_ > first_fill_) {
+        leads_.push_back(lead);
+        sorted_ = false;
+    }
     if (!first_print_) {
         first_print_ = at;
     }

@@ -31,8 +31,12 @@ public:
     /// More misses and late PrintGos are counted only.
     static constexpr std::size_t max_listed = 100000;
 
-    /// Makes room, so that nothing is copied while the line runs.
-    void reserve(std::size_t prints) { leads_.reserve(prints); }
+    /// The lead times of the first `first_fill` prints are left out: how long those records lay there tells when the
+    /// line began to move, not how fast the host is. Room for `prints` is made now, so that nothing is copied later.
+    LeadTimeLog(std::size_t first_fill, std::size_t prints)
+        : first_fill_(first_fill) {
+        leads_.reserve(prints);
+    }
 
     void printed(Instant at, Duration lead);
     /// `arrival` of the record that was too late; none: the FIFO was empty.
@@ -41,7 +45,7 @@ public:
     void arrived(Instant now);
     void late(Instant due, Instant at);
 
-    [[nodiscard]] std::uint64_t prints() const { return leads_.size(); }
+    [[nodiscard]] std::uint64_t prints() const { return prints_; }
     [[nodiscard]] std::uint64_t misses() const { return misses_; }
     [[nodiscard]] std::uint64_t late_print_gos() const { return late_count_; }
     [[nodiscard]] const std::vector<Miss>& listed_misses() const { return listed_; }
@@ -49,11 +53,13 @@ public:
     /// Instants of the first and the last print; none while nothing was printed.
     [[nodiscard]] std::optional<Instant> first_print() const { return first_print_; }
     [[nodiscard]] std::optional<Instant> last_print() const { return last_print_; }
-    /// The lead time that `share` (0…1) of the prints did not reach; 0 is the smallest. None while nothing was printed.
+    /// The lead time that `share` (0…1) of the prints did not reach; 0 is the smallest. None while there are none.
     /// Sorts: not in the middle of a run.
     [[nodiscard]] std::optional<Duration> quantile(double share);
 
 private:
+    std::size_t first_fill_;
+    std::uint64_t prints_ = 0;
     std::vector<Duration> leads_;
     std::vector<Miss> listed_;
     std::vector<LatePrintGo> late_;

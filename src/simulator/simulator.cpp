@@ -46,7 +46,7 @@ Simulator::Simulator(SimulatorSettings settings, boost::asio::io_context& io)
     wall_minus_steady_ns_ = wall_minus_steady_ns();
     statistics_.depth = settings_.printer.depth;
     if (settings_.count_misses) {
-        lead_times_.emplace().reserve(kept_lead_times);
+        lead_times_.emplace(settings_.printer.depth, kept_lead_times);
     }
 }
 

@@ -37,9 +37,9 @@ TEST(FeederArming, shouldFollowTheManualUpToTheFirstPrint) {
     story.expect("=MR 101-104; ?SM");
     story.sm(3, 77, 110);
     story.wait(milliseconds{4});
-    story.expect("!GO; ?RS");
+    story.expect("!GO; ?RS; ?SM");
     story.rs(State::printing);
-    story.expect("notice: printing; ?SM");
+    story.expect("notice: printing");
     EXPECT_EQ(story.phase(), Phase::printing);
 }
 

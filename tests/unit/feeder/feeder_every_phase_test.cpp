@@ -221,10 +221,14 @@ TEST(FeederEveryPhase, shouldKeepTheDeadlineOfEveryPhase) {
             }
             continue;
         }
-        const Instant entered = story.now;
-        ASSERT_EQ(story.feeder.next_wake(), entered + deadline->second.after);
-        story.wait(deadline->second.after - milliseconds{1});
-        story.expect("");
+        if (phase == Phase::starting) { // it polls meanwhile
+            story.wait(deadline->second.after - milliseconds{1});
+            story.take();
+        } else {
+            ASSERT_EQ(story.feeder.next_wake(), story.now + deadline->second.after);
+            story.wait(deadline->second.after - milliseconds{1});
+            story.expect("");
+        }
         story.wait(milliseconds{1});
         story.expect(deadline->second.story);
         EXPECT_NE(story.feeder.next_wake(), story.now) << "it would wake up for ever";

@@ -70,9 +70,10 @@ TEST(FeederFilling, shouldGoOnWithoutAStopPointAndTryAgainWhilePrinting) {
     EXPECT_EQ(story.phase(), Phase::loading);
     story.supplied(110);
     story.sm(3, 77, 0);
+    story.wait(milliseconds{4});
     story.take();
     story.rs(State::printing);
-    story.expect("notice: printing; =CM 110; ?SM");
+    story.expect("notice: printing; =CM 110");
 }
 
 TEST(FeederFilling, shouldWaitForTheWholeFirstFill) {
@@ -125,7 +126,7 @@ TEST(FeederFilling, shouldBelieveOnlyTheSecondAnswerAboutTheFill) {
     story.wait(milliseconds{3}); // the first product may come with the start
     story.expect("");
     story.wait(milliseconds{1});
-    story.expect("!GO; ?RS");
+    story.expect("!GO; ?RS; ?SM");
 }
 
 TEST(FeederFilling, shouldSayWhenThePrinterHoldsAnotherNumberOfEntries) {
@@ -134,7 +135,7 @@ TEST(FeederFilling, shouldSayWhenThePrinterHoldsAnotherNumberOfEntries) {
     story.sm(4, 77, 110);
     story.expect("?SM; notice: the printer reports another number of FIFO entries than was sent");
     story.wait(milliseconds{4});
-    story.expect("!GO; ?RS");
+    story.expect("!GO; ?RS; ?SM");
 }
 
 TEST(FeederFilling, shouldStopWhenThePrinterTakesNoRecords) {
@@ -165,7 +166,7 @@ TEST(FeederFilling, shouldStartWithASingleRecordThatIsLoadedAlready) {
     story.expect("=MR 101-101; ?SM");
     story.sm(0, 77, 101);
     story.wait(milliseconds{4});
-    story.expect("!GO; ?RS");
+    story.expect("!GO; ?RS; ?SM");
 }
 
 TEST(FeederFilling, shouldWaitForTheStart) {
@@ -173,14 +174,14 @@ TEST(FeederFilling, shouldWaitForTheStart) {
     story.rs(State::ready_to_print);
     story.expect("");
     story.wait(milliseconds{20});
-    story.expect("?RS");
+    story.expect("?RS; ?SM");
     story.rs(State::ready_to_print, raw_error(10202, 1));
     EXPECT_EQ(story.take().find("notice: the printer reports 10202"), 0U) << "a warning is no reason to end";
     story.rs(State::ready_to_print, raw_error(10202, 1));
     story.expect("");
     story.wait(milliseconds{20});
     story.rs(State::printing, raw_error(10202, 1));
-    story.expect("?RS; notice: printing; ?SM");
+    story.expect("?RS; ?SM; notice: printing");
 }
 
 TEST(FeederFilling, shouldGiveUpAPrinterThatDoesNotStart) {
@@ -198,6 +199,7 @@ TEST(FeederFilling, shouldFindTheTruthWhenTheStartEndsInAnError) {
     story.rs(State::ready_to_print, raw_error(1018));
     story.expect("?RS");
     story.rs(State::ready_to_print, raw_error(1018));
+    story.sm(0, 77, 0); // asked with the start
     story.sm(0, 77, 0);
     story.sm(0, 77, 0);
     story.expect("?SM; ?SM; ?CC");
@@ -216,14 +218,57 @@ TEST(FeederFilling, shouldFinishAShortRunThatIsOverBeforeAnyoneLooked) {
     story.sm(0, 77, 102);
     story.supplied(102);
     story.sm(1, 77, 102);
+    story.wait(milliseconds{4});
     story.take();
     story.rs(State::ready_to_print, end_message);
     story.rs(State::ready_to_print, end_message);
-    story.sm(0, 102, 0);
-    story.sm(0, 102, 0);
-    story.take();
+    story.say_where(0, 102);
     story.cc(1002);
     story.expect("settle this run: printed 101-102, in doubt none, unused none by end message 1223; !EQ; ?RS");
+}
+
+TEST(FeederFilling, shouldFinishAShortRunOfAPrinterWithoutEndMessage) {
+    Story story;
+    story.arm_to_grant();
+    story.granted(101, 102, 102);
+    story.sm(0, 77, 0);
+    story.sm(0, 77, 0);
+    story.sm(0, 77, 0); // nor does it keep the stop point
+    story.supplied(102);
+    story.sm(1, 77, 0);
+    story.wait(milliseconds{4});
+    story.sm(0, 102, 0);
+    story.cc(1002);
+    story.take();
+    story.rs(State::ready_to_print);
+    story.expect("?RS");
+    story.rs(State::ready_to_print);
+    story.say_where(0, 102);
+    story.cc(1002);
+    story.expect("settle this run: printed 101-102, in doubt none, unused none by mail status and total print counter; "
+                 "end: finished (ready for print start, error 0)");
+}
+
+TEST(FeederFilling, shouldRefillBeforeThePrinterSaysThatItPrints) {
+    Story story = reach(Phase::starting);
+    story.sm(3, 77, 110);
+    story.expect("");
+    story.sm(1, 102, 110);
+    story.expect("printed through 102; =MR 105-106");
+    story.sm(0, 103, 0); // has it been stopped? ?RS will tell
+    story.expect("");
+    story.rs(State::printing);
+    EXPECT_EQ(story.take().find("notice: printing"), 0U);
+    EXPECT_EQ(story.phase(), Phase::printing);
+}
+
+TEST(FeederFilling, shouldAnswerNothingThatWasNotAskedBeforeTheStart) {
+    Story story = reach(Phase::verifying);
+    story.sm(3, 77, 110);
+    story.sm(1, 102, 110);
+    story.rs(State::printing);
+    story.expect("");
+    EXPECT_EQ(story.phase(), Phase::starting);
 }
 
 using FeederDeathTest = testing::Test;

@@ -60,6 +60,7 @@ TEST(FeederPrinting, shouldNotTakeANumberFromBeforeThatLiesWithinTheRunForARepor
     story.sm(0, 103, 110);
     story.supplied(110);
     story.sm(3, 103, 110);
+    story.wait(milliseconds{4});
     story.rs(State::printing);
     story.actions.clear();
     story.sm(3, 103, 110);
@@ -91,6 +92,7 @@ TEST(FeederPrinting, shouldSendNothingBeforeItsIntentIsDurable) {
     story.sm(0, 77, 200);
     story.supplied(200);
     story.sm(3, 77, 200);
+    story.wait(milliseconds{4});
     story.rs(State::printing);
     story.sm(3, 77, 200);
     story.take();
@@ -114,6 +116,7 @@ TEST(FeederPrinting, shouldRefillWhenPagesArrive) {
     story.sm(0, 77, 200);
     story.supplied(104);
     story.sm(3, 77, 200);
+    story.wait(milliseconds{4});
     story.rs(State::printing);
     story.sm(3, 77, 200);
     story.sm(0, 104, 200);
@@ -206,6 +209,7 @@ TEST(FeederPrinting, shouldMeasureTheRate) {
     story.sm(0, 77, 100000);
     story.supplied(100000);
     story.sm(255, 77, 100000);
+    story.wait(milliseconds{4});
     story.rs(State::printing);
     story.sm(255, 77, 100000);
     for (std::uint32_t step = 1; step <= 100; ++step) {

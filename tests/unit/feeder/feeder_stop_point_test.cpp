@@ -34,6 +34,7 @@ Story printing_without_stop_point() {
     story.sm(0, 77, 0);
     story.supplied(110);
     story.sm(3, 77, 0);
+    story.wait(milliseconds{4});
     story.rs(State::printing);
     story.actions.clear();
     return story;
@@ -178,6 +179,7 @@ TEST(FeederStopPoint, shouldNotTakeANumberFromBeforeTheRunForItsEndMarker) {
     story.sm(0, 111, 0);
     story.supplied(110);
     story.sm(1, 111, 0);
+    story.wait(milliseconds{4});
     story.take();
     story.rs(State::printing);
     for (int answers = 0; answers < 6; ++answers) {
@@ -210,6 +212,7 @@ TEST(FeederStopPoint, shouldQueueNoEndMarkerBehindTheLargestNumber) {
     story.sm(0, 77, 0);
     story.supplied(max);
     story.sm(1, 77, 0);
+    story.wait(milliseconds{4});
     story.rs(State::printing);
     story.take();
     for (int answers = 0; answers < 7; ++answers) {
