@@ -111,7 +111,7 @@ void Feeder::confirm_reported(Actions& out) {
 
 void Feeder::ask_for_proof(Instant now, Actions& out) {
     const bool wanted = reported_through_ > confirmed_through_ && counter_proof_.wants_count(now);
-    if (wanted && counters_outstanding_ == 0 && mail_outstanding_ < max_mail_outstanding) {
+    if (wanted && counters_outstanding_ == 0 && mail_outstanding_ < Pacing::max_inquiries) {
         ask(Parameter::CC, now, out);
         ask(Parameter::SM, now, out);
         ask(Parameter::SM, now, out);

@@ -107,7 +107,7 @@ void Feeder::on_time(Instant now, Actions& out) {
     if (go_due_ && now >= *go_due_) {
         go(now, out);
     }
-    if (polls() && now >= mail_due_ && mail_outstanding_ < max_mail_outstanding) {
+    if (polls() && now >= mail_due_ && mail_outstanding_ < Pacing::max_inquiries) {
         ask(Parameter::SM, now, out);
     }
     if (phase_ == Phase::printing && now >= status_due_ && !status_outstanding_) {
@@ -125,7 +125,7 @@ std::optional<Instant> Feeder::next_wake() const {
     consider(deadline_);
     consider(retry_at_);
     consider(go_due_);
-    if (polls() && mail_outstanding_ < max_mail_outstanding) {
+    if (polls() && mail_outstanding_ < Pacing::max_inquiries) {
         consider(mail_due_);
     }
     if (phase_ == Phase::printing && !status_outstanding_) {

@@ -6,7 +6,8 @@ namespace linefeed::feeder {
 
 Pacing::Pacing(const PacingSettings& settings)
     : settings_(settings) {
-    LINEFEED_ASSERT(Duration{0} < settings.poll_min && settings.poll_min <= settings.poll_max);
+    LINEFEED_ASSERT(Duration{0} < settings.poll_least && settings.poll_least <= settings.poll_min);
+    LINEFEED_ASSERT(settings.poll_min <= settings.poll_max);
     LINEFEED_ASSERT(settings.burst_rate > 0 && settings.polls_per_buffer > 0);
 }
 
@@ -14,10 +15,12 @@ void Pacing::restart(Instant now, RecordCount printed) {
     oldest_ = 0;
     size_ = 1;
     samples_[0] = {printed, now};
+    restarted_at_ = last_at_ = now;
 }
 
 void Pacing::printed(RecordCount count, Instant now) {
     LINEFEED_ASSERT(size_ > 0);
+    last_at_ = now;
     const std::size_t newest = (oldest_ + size_ - 1) % samples_kept;
     LINEFEED_ASSERT(count >= samples_[newest].count);
     // Samples closer together than this would let the array cover less than the window at fast polling.
@@ -47,8 +50,9 @@ double Pacing::rate() const {
 bool Pacing::leaps(RecordCount count, Instant now) const {
     LINEFEED_ASSERT(size_ > 0);
     const Sample& newest = samples_[(oldest_ + size_ - 1) % samples_kept];
-    constexpr double jitter = 8.0; // answers do not come as evenly as they were asked for
-    const double at_most = std::max(2.0 * rate(), 4.0 * settings_.burst_rate);
+    constexpr double jitter = 8.0;      // answers do not come as evenly as they were asked for
+    constexpr double any_line = 4000.0; // prints/s
+    const double at_most = std::max(2.0 * rate(), any_line);
     const double seconds = std::chrono::duration<double>(now - newest.at).count();
     return static_cast<double>((count - newest.count).value()) > jitter + at_most * seconds;
 }
@@ -58,14 +62,34 @@ void Pacing::answered_after(Duration round_trip) {
     round_trip_ = std::max(round_trip, round_trip_ - round_trip_ / memory);
 }
 
+/// Shortly after a start the line may run at any rate.
+bool Pacing::rate_is_known() const {
+    return size_ == 0 || last_at_ - restarted_at_ >= settings_.unknown_rate;
+}
+
+/// More often than every few prints brings nothing, and a slow line has time. What can be under way at once is spread
+/// over the time that an answer takes.
+Duration Pacing::least_interval() const {
+    constexpr double prints = 8.0;
+    const std::chrono::duration<double> wanted{prints / std::max(rate(), 1.0)};
+    const Duration least = rate_is_known() ? std::clamp(std::chrono::duration_cast<Duration>(wanted),
+                                                        settings_.poll_least, settings_.poll_min)
+                                           : settings_.poll_least;
+    return std::max(least, round_trip_ / max_inquiries);
+}
+
 Duration Pacing::poll_interval(RecordCount level) const {
     using Seconds = std::chrono::duration<double>;
+    const Duration least = least_interval();
+    if (!rate_is_known()) {
+        return least;
+    }
     const Seconds to_empty{static_cast<double>(level.value()) / std::max(rate(), settings_.burst_rate)};
     const Seconds wanted = (to_empty - round_trip_ - settings_.lead) / settings_.polls_per_buffer;
     if (wanted >= Seconds{settings_.poll_max}) {
         return settings_.poll_max; // before the cast: the wish of a very slow line may not fit in a Duration
     }
-    return std::max(std::chrono::duration_cast<Duration>(wanted), settings_.poll_min);
+    return std::max(std::chrono::duration_cast<Duration>(wanted), least);
 }
 
 bool Pacing::worth_sending(RecordCount credit, RecordCount level, RecordCount depth) {

@@ -10,12 +10,15 @@
 
 namespace linefeed::feeder {
 
-/// Precondition: 0 < poll_min ≤ poll_max; rates and polls above 0.
+/// Precondition: 0 < poll_least ≤ poll_min ≤ poll_max; rates and polls above 0.
 struct PacingSettings {
     Duration poll_min = std::chrono::milliseconds{1};
+    /// Even more often when the measured rate demands it, and while nothing is known of the rate after a start.
+    Duration poll_least = std::chrono::microseconds{400};
+    Duration unknown_rate = std::chrono::milliseconds{250}; ///< for so long after a start
     Duration poll_max = std::chrono::milliseconds{250};
     /// A standing line may start again at this rate (prints/s) at any moment.
-    double burst_rate = 1000.0;
+    double burst_rate = 2000.0;
     /// Polls in the time in which the buffer would run empty.
     double polls_per_buffer = 8.0;
     /// A record must lie in the FIFO so long before its PrintGo (protocol, section 5).
@@ -26,6 +29,8 @@ struct PacingSettings {
 /// answer.
 class Pacing {
 public:
+    static constexpr int max_inquiries = 10; ///< under way at once
+
     explicit Pacing(const PacingSettings& settings);
 
     /// `printed` records in all have been printed already.
@@ -44,6 +49,9 @@ public:
     [[nodiscard]] static bool worth_sending(RecordCount credit, RecordCount level, RecordCount depth);
 
 private:
+    [[nodiscard]] bool rate_is_known() const;
+    [[nodiscard]] Duration least_interval() const;
+
     struct Sample {
         RecordCount count;
         Instant at;
@@ -56,6 +64,8 @@ private:
     std::array<Sample, samples_kept> samples_{};
     std::size_t oldest_ = 0;
     std::size_t size_ = 0;
+    Instant restarted_at_{};
+    Instant last_at_{};
 };
 
 } // namespace linefeed::feeder

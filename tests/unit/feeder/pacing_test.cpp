@@ -96,7 +96,7 @@ TEST(Pacing, shouldPollAFastLineMoreOftenThanItsBurstRate) {
 }
 
 TEST(Pacing, shouldPollMoreOftenWhenAnswersAreSlow) {
-    Pacing pacing{PacingSettings{}};
+    Pacing pacing{PacingSettings{.burst_rate = 1000.0}};
     EXPECT_EQ(pacing.poll_interval(RecordCount{103}), microseconds{12500});
     pacing.answered_after(milliseconds{20});
     EXPECT_EQ(pacing.poll_interval(RecordCount{103}), milliseconds{10});
@@ -107,7 +107,31 @@ TEST(Pacing, shouldPollMoreOftenWhenAnswersAreSlow) {
     }
     EXPECT_EQ(pacing.poll_interval(RecordCount{104}), microseconds{12500});
     pacing.answered_after(milliseconds{500});
-    EXPECT_EQ(pacing.poll_interval(RecordCount{103}), milliseconds{1}) << "no time is left at all";
+    EXPECT_EQ(pacing.poll_interval(RecordCount{103}), milliseconds{50})
+        << "no time is left at all: ten under way at once";
+}
+
+TEST(Pacing, shouldPollFastWhileNothingIsKnownOfTheRate) {
+    Pacing pacing{PacingSettings{}};
+    pacing.restart(start);
+    EXPECT_EQ(pacing.poll_interval(RecordCount{256}), microseconds{400});
+    pacing.printed(RecordCount{1}, start + milliseconds{249});
+    EXPECT_EQ(pacing.poll_interval(RecordCount{256}), microseconds{400});
+    pacing.printed(RecordCount{1}, start + milliseconds{250});
+    EXPECT_GT(pacing.poll_interval(RecordCount{256}), milliseconds{10});
+}
+
+TEST(Pacing, shouldPollBelowItsLeastIntervalOnlyWhenTheRateDemandsIt) {
+    Pacing pacing{PacingSettings{}};
+    pacing.restart(start);
+    run(pacing, 10000, seconds{2}, milliseconds{5});
+    EXPECT_EQ(pacing.poll_interval(RecordCount{30}), microseconds{800}) << "every 8 prints";
+    pacing.restart(start + seconds{10});
+    pacing.printed(RecordCount{100000}, start + seconds{11});
+    EXPECT_EQ(pacing.poll_interval(RecordCount{30}), microseconds{400});
+    pacing.restart(start + seconds{20});
+    pacing.printed(RecordCount{10}, start + seconds{21});
+    EXPECT_EQ(pacing.poll_interval(RecordCount{3}), milliseconds{1}) << "a slow line with a small FIFO";
 }
 
 TEST(Pacing, shouldCollectBlocksOnlyWhenTheBufferIsComfortable) {

@@ -32,6 +32,7 @@ inline std::string text(const Actions& actions) {
 inline FeederSettings quick_settings() {
     FeederSettings settings;
     settings.pacing.poll_min = std::chrono::milliseconds{1};
+    settings.pacing.unknown_rate = {};
     return settings;
 }
 
