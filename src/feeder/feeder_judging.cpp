@@ -31,9 +31,11 @@ Evidence Feeder::evidence() const {
     if (!has_granted_records()) {
         return {.mail = mail_, .printer = facts_};
     }
+    // Another client may have set a stop point before the end: then the number contradicts the message.
+    const bool at_the_end = mail_.last_printed == refill_.range().last() || mail_.last_printed == RecordNumber{};
     Evidence evidence{.mail = mail_,
                       .printer = facts_,
-                      .end_message = is_error(status_.error, protocol::error_code::last_record_printed) &&
+                      .end_message = is_error(status_.error, protocol::error_code::last_record_printed) && at_the_end &&
                                      stop_would_show() && refill_.all_sent() && !restarted_,
                       .uninterrupted = !memory_lost_,
                       .restarted = restarted_};

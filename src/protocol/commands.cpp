@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 
 namespace linefeed::protocol {
 
@@ -87,11 +88,31 @@ constexpr bool in_order(const Table& table) {
 static_assert(in_order(actions) && static_cast<std::size_t>(Action::end_of_data) + 1 == actions.size());
 static_assert(in_order(parameters) && static_cast<std::size_t>(Parameter::VS) + 1 == parameters.size());
 
+constexpr std::uint16_t packed(std::string_view code) {
+    return static_cast<std::uint16_t>(static_cast<unsigned char>(code[0]) << 8 | static_cast<unsigned char>(code[1]));
+}
+
+/// The codes alone, side by side: every answer is looked up on its way to the refill, and a table of texts is twenty
+/// cache lines that nobody else has use for.
 template <typename Name, std::size_t Size>
-std::optional<Name> find(const std::array<Row<Name>, Size>& table, std::string_view code) {
-    for (const Row<Name>& row : table) {
-        if (row.code == code) {
-            return row.name;
+constexpr std::array<std::uint16_t, Size> packed_codes(const std::array<Row<Name>, Size>& table) {
+    std::array<std::uint16_t, Size> codes{};
+    for (std::size_t i = 0; i < Size; ++i) {
+        codes[i] = packed(table[i].code);
+    }
+    return codes;
+}
+constexpr auto action_codes = packed_codes(actions);
+constexpr auto parameter_codes = packed_codes(parameters);
+
+template <typename Name, std::size_t Size>
+std::optional<Name> find(const std::array<std::uint16_t, Size>& codes, std::string_view code) {
+    if (code.size() == 2) {
+        const std::uint16_t wanted = packed(code);
+        for (std::size_t i = 0; i < Size; ++i) {
+            if (codes[i] == wanted) {
+                return static_cast<Name>(i);
+            }
         }
     }
     return std::nullopt;
@@ -116,11 +137,11 @@ std::string_view description(Parameter parameter) {
 }
 
 std::optional<Action> action_from_code(std::string_view code) {
-    return find(actions, code);
+    return find<Action>(action_codes, code);
 }
 
 std::optional<Parameter> parameter_from_code(std::string_view code) {
-    return find(parameters, code);
+    return find<Parameter>(parameter_codes, code);
 }
 
 } // namespace linefeed::protocol

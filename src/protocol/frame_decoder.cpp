@@ -28,6 +28,10 @@ bool is_digit(char byte) {
 bool is_address(char byte) {
     return is_digit(byte) || (byte >= 'A' && byte <= 'F');
 }
+/// In a payload: it may end the frame, begin the next, or change the meaning of the byte behind it.
+bool is_special(char byte) {
+    return byte == frame_end || byte == frame_start || byte == escape;
+}
 bool is_group(char byte) {
     return std::string_view{"*!?=$"}.find(byte) != std::string_view::npos;
 }
@@ -150,7 +154,7 @@ FrameDecoder::Step FrameDecoder::take_payload(std::string_view bytes) {
         return restarted();
     }
     const std::string_view window = has_length ? bytes.substr(0, expected - received_) : bytes;
-    const std::size_t plain = std::min(window.find_first_of("\r^\\"), window.size());
+    const auto plain = static_cast<std::size_t>(std::ranges::find_if(window, is_special) - window.begin());
     if (plain > 0) {
         escaped_ = false;
         return keep(window.substr(0, plain));

@@ -111,7 +111,10 @@ Message read_parameter(const Frame& frame, EscapeMode escapes) {
             }
             ParameterReader in{values};
             Message message = reader.read(in, escapes);
-            return in.ok() ? message : malformed(payload, in.problem());
+            if (!in.ok()) {
+                message = malformed(payload, in.problem());
+            }
+            return message;
         }
     }
     return unknown(frame);

@@ -269,6 +269,26 @@ TEST(FeederStopping, shouldFinishWhenAStopComesTooLate) {
     story.expect(ended(OutcomeCode::finished));
 }
 
+TEST(FeederStopping, shouldNotBelieveAnEndMessageThatTheNumberContradicts) {
+    Story story = reach(Phase::printing);
+    story.sm(1, 104, 110);
+    story.sm(1, 107, 110);
+    // Another client has set the stop point to 108.
+    story.rs(State::ready_to_print, end_message);
+    story.judge(0, 108, true, 1008, end_message);
+    const std::string told = story.take();
+    EXPECT_NE(told.find("settle this run so far: printed 108-108 by mail status and total"), std::string::npos) << told;
+    EXPECT_NE(told.find("settle this run: printed none, in doubt none, unused 109-110"), std::string::npos) << told;
+    EXPECT_NE(told.find("end: printer_error"), std::string::npos) << told;
+
+    story = reach(Phase::printing); // a firmware that forgets its number with the stop
+    story.sm(1, 104, 110);
+    story.sm(1, 108, 110);
+    story.rs(State::ready_to_print, end_message);
+    story.judge(0, 0, true, 1010, end_message);
+    EXPECT_NE(story.take().find("printed 109-110, in doubt none, unused none by end message 1223"), std::string::npos);
+}
+
 TEST(FeederStopping, shouldWaitUntilTheEndMessageIsGone) {
     Story story = reach(Phase::finishing);
     story.rs(State::ready_to_print, end_message);

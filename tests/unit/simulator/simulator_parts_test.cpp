@@ -1,6 +1,7 @@
 // What stands around the printer model: the ring of records, the conveyor's grid, the tape, the judgement of a run.
 #include "simulator/conveyor.hpp"
 #include "simulator/lead_time_histogram.hpp"
+#include "simulator/lead_time_log.hpp"
 #include "simulator/mail_fifo.hpp"
 #include "simulator/number_sequence.hpp"
 #include "simulator/run_statistics.hpp"
@@ -243,6 +244,56 @@ TEST(LeadTimeHistogram, shouldPutBordersIntoTheUpperBucket) {
     EXPECT_EQ(histogram.count(3), 1U);
     EXPECT_EQ(histogram.count(LeadTimeHistogram::borders.size() - 1), 1U);
     EXPECT_EQ(histogram.smallest(), Duration::zero());
+}
+
+TEST(LeadTimeLog, shouldLeaveOutTheFirstFillAndKnowItsQuantiles) {
+    LeadTimeLog log{2, 16};
+    EXPECT_EQ(log.quantile(0), std::nullopt);
+    log.printed(Instant{milliseconds{1}}, milliseconds{1});
+    log.printed(Instant{milliseconds{2}}, milliseconds{2});
+    EXPECT_EQ(log.quantile(0), std::nullopt);
+    for (const int lead : {50, 40, 30, 20}) {
+        log.printed(Instant{milliseconds{100 - lead}}, milliseconds{lead});
+    }
+    EXPECT_EQ(log.prints(), 6U);
+    EXPECT_EQ(log.quantile(0), Duration{milliseconds{20}});
+    EXPECT_EQ(log.quantile(0.5), Duration{milliseconds{40}});
+    EXPECT_EQ(log.quantile(1), Duration{milliseconds{50}});
+    EXPECT_EQ(log.first_print(), Instant{milliseconds{1}});
+    EXPECT_EQ(log.last_print(), Instant{milliseconds{80}});
+}
+
+TEST(LeadTimeLog, shouldTellAMissHowLateItsRecordWas) {
+    LeadTimeLog log{0, 16};
+    log.missed(Instant{milliseconds{10}}, Duration{7}, Instant{milliseconds{8}}); // too late, but there
+    log.missed(Instant{milliseconds{20}}, Duration{0}, std::nullopt);
+    log.missed(Instant{milliseconds{21}}, Duration{0}, std::nullopt);
+    EXPECT_EQ(log.listed_misses().at(1).lead, std::nullopt);
+    log.arrived(Instant{milliseconds{25}});
+    log.arrived(Instant{milliseconds{30}}); // nobody waits any more
+    EXPECT_EQ(log.misses(), 3U);
+    EXPECT_EQ(log.listed_misses().at(0).late, Duration{7});
+    EXPECT_EQ(log.listed_misses().at(0).lead, Duration{milliseconds{2}});
+    EXPECT_EQ(log.listed_misses().at(1).lead, Duration{milliseconds{-5}});
+    EXPECT_EQ(log.listed_misses().at(2).lead, Duration{milliseconds{-4}});
+}
+
+TEST(Conveyor, shouldKeepItsGridWhateverStalls) {
+    ConveyorSettings settings;
+    settings.rate = 1000;
+    settings.start_delay = Duration::zero();
+    settings.keeps_grid = true;
+    Conveyor conveyor{settings};
+    conveyor.start(Instant{});
+    ASSERT_EQ(conveyor.due(), Instant{milliseconds{1}});
+    conveyor.passed(Instant{milliseconds{6}}); // five periods late
+    Instant last;
+    for (int product = 0; product < 12; ++product) { // made up for at twice the rate
+        last = *conveyor.due();
+        conveyor.passed(last);
+    }
+    EXPECT_EQ(conveyor.due(), Instant{milliseconds{14}});
+    EXPECT_EQ(last, Instant{milliseconds{13}});
 }
 
 TEST(RunStatistics, shouldTellTheRunInWordsAndAsJson) {

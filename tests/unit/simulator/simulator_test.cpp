@@ -1,4 +1,5 @@
 // The simulator over real sockets: who is answered, what lands on the tape, how it ends.
+#include "simulator/fleet.hpp"
 #include "simulator/simulator.hpp"
 
 #include <boost/asio/connect.hpp>
@@ -7,7 +8,9 @@
 #include <boost/asio/read_until.hpp>
 #include <boost/asio/write.hpp>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -200,6 +203,65 @@ TEST(Simulator, shouldCauseTheFaultsOrdered) {
     const RunStatistics& run = simulator.wait_for_end();
     EXPECT_EQ(run.errors.at(12113), 1U);
     EXPECT_GE(run.prints, 4U);
+}
+
+TEST(Simulator, shouldCountMissesAndGoOn) {
+    SimulatorSettings settings;
+    settings.conveyor.rate = 500;
+    settings.conveyor.keeps_grid = true;
+    settings.count_misses = true;
+    RunningSimulator simulator{settings};
+    {
+        Client client{simulator};
+        client.send("^0=CM2\r^0=MR1\tA\r");
+        client.ask("^0?SM\r");
+        client.send("^0!GO\r");
+        std::this_thread::sleep_for(milliseconds{60}); // from 20 ms on a PrintGo every 2 ms: one print, then misses
+        EXPECT_EQ(client.ask("^0?RS\r").substr(0, 8), "^0=RS2\t6");
+        client.send("^0=MR2\tB\r");
+        std::string status;
+        while (status != "^0=SM256\t0\t2\t0\t1\r") {
+            status = client.ask("^0?SM\r");
+            ASSERT_EQ(status.substr(0, 9), "^0=SM256\t");
+        }
+    }
+    const RunStatistics& run = simulator.wait_for_end();
+    EXPECT_EQ(run.prints, 2U);
+    EXPECT_GE(run.unprinted_products, 5U);
+    EXPECT_EQ(run.errors.count(5043), 0U);
+}
+
+TEST(Fleet, shouldRunSeveralPrintersAndReportOnEach) {
+    SimulatorSettings settings;
+    settings.port = "0";
+    settings.conveyor.rate = 500;
+    settings.conveyor.keeps_grid = settings.count_misses = true;
+    FleetSettings two;
+    two.printers = 2;
+    two.report = testing::TempDir() + "linefeed_fleet_test.json";
+    Fleet fleet{settings, two};
+    const auto addresses = fleet.open();
+    ASSERT_TRUE(addresses);
+    ASSERT_EQ(addresses->size(), 2U);
+    EXPECT_NE(addresses->at(0), addresses->at(1));
+    std::thread host{[port = addresses->at(1).substr(addresses->at(1).rfind(':') + 1)] {
+        boost::asio::io_context io;
+        tcp::socket socket{io};
+        boost::asio::connect(socket, tcp::resolver{io}.resolve("127.0.0.1", port));
+        boost::asio::write(socket, boost::asio::buffer(std::string{"^0=CM2\r^0=MR1\tA\r^0=MR2\tB\r^0!GO\r"}));
+        std::this_thread::sleep_for(milliseconds{100});
+        std::raise(SIGTERM);
+    }};
+    EXPECT_TRUE(fleet.run());
+    host.join();
+    ASSERT_TRUE(fleet.write_report());
+    EXPECT_EQ(fleet.statistics().at(0)->prints, 0U);
+    EXPECT_EQ(fleet.statistics().at(1)->prints, 2U);
+    const auto report = nlohmann::json::parse(std::ifstream{*two.report});
+    ASSERT_EQ(report["printers"].size(), 2U);
+    EXPECT_EQ(report["printers"][1]["prints"], 2);
+    EXPECT_EQ(report["printers"][1]["misses"], 0);
+    EXPECT_TRUE(report["printers"][0]["lead_ns"]["min"].is_null());
 }
 
 TEST(Simulator, shouldSayThatItsPortIsTaken) {
