@@ -53,7 +53,8 @@ public:
     /// Removes one value; the order of the rest stays.
     void erase(std::size_t index) {
         LINEFEED_ASSERT(index < size_);
-        std::move(begin() + static_cast<std::ptrdiff_t>(index) + 1, end(), begin() + static_cast<std::ptrdiff_t>(index));
+        std::move(begin() + static_cast<std::ptrdiff_t>(index) + 1, end(),
+                  begin() + static_cast<std::ptrdiff_t>(index));
         --size_;
         std::destroy_at(storage_.items + size_);
     }

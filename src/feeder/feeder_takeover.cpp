@@ -18,9 +18,12 @@ constexpr int max_takeover_reads = 6;
 
 } // namespace
 
-/// The printer prints the earlier run and reports a record of it: it may be taken over.
+/// The printer prints the earlier run and reports a record of it: it may be taken over. A number that stood there before
+/// the run says nothing.
 bool Feeder::may_take_over() const {
-    return plan_.take_over && mail_.last_printed >= plan_.open->first && mail_.entries > 0;
+    const OpenRun& run = *plan_.open;
+    const bool left_over = run.printed_through < run.first && mail_.last_printed == run.last_printed_before;
+    return plan_.take_over && mail_.last_printed >= run.first && !left_over && mail_.entries > 0;
 }
 
 void Feeder::begin_takeover(Instant now, Actions& out) {

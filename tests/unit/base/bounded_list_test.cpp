@@ -59,6 +59,49 @@ TEST(BoundedList, shouldTakeValuesThatCanOnlyBeMoved) {
     EXPECT_EQ(*list[0], 7);
 }
 
+TEST(BoundedList, shouldCloseTheGapOfAnErasedValue) {
+    BoundedList<std::string, 3> list;
+    list.push_back("?RS");
+    list.push_back("?SM");
+    list.push_back("?CC");
+    list.erase(1);
+    EXPECT_THAT(list, ElementsAre("?RS", "?CC"));
+}
+
+TEST(BoundedList, shouldCopyAndMoveWhatIsInIt) {
+    using List = BoundedList<std::shared_ptr<int>, 3>;
+    const auto value = std::make_shared<int>(7);
+    List list;
+    list.push_back(value);
+    list.push_back(value);
+    List copy{list};
+    EXPECT_EQ(value.use_count(), 5);
+    copy = list;
+    EXPECT_EQ(value.use_count(), 5);
+    const List moved{std::move(copy)};
+    EXPECT_EQ(value.use_count(), 5);
+    EXPECT_THAT(moved, ElementsAre(value, value));
+    list = List{};
+    EXPECT_EQ(value.use_count(), 3);
+}
+
+TEST(BoundedList, shouldEndTheLifeOfWhatLeavesIt) {
+    const auto value = std::make_shared<int>(7);
+    {
+        BoundedList<std::shared_ptr<int>, 3> list;
+        list.push_back(value);
+        list.push_back(value);
+        list.push_back(value);
+        EXPECT_EQ(value.use_count(), 4);
+        list.erase(0);
+        EXPECT_EQ(value.use_count(), 3);
+        list.clear();
+        EXPECT_EQ(value.use_count(), 1);
+        list.push_back(value);
+    }
+    EXPECT_EQ(value.use_count(), 1);
+}
+
 TEST(BoundedListDeathTest, shouldAbortBeyondTheCapacity) {
     BoundedList<int, 1> list;
     list.push_back(1);

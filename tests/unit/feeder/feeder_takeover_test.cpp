@@ -171,6 +171,15 @@ TEST(FeederTakeover, shouldHaltAPrinterThatHasPrintedNoneOfTheRunYet) {
     story.expect(halted); // only the number of a record of the run tells where it is
 }
 
+TEST(FeederTakeover, shouldHaltAPrinterWhoseNumberStoodThereBeforeTheRun) {
+    FeederPlan plan = takeover_plan();
+    plan.open->printed_through = RecordNumber{0};
+    plan.open->last_printed_before = RecordNumber{150}; // of another job, and by chance a number of this run
+    found_printing(plan).expect(halted);
+    plan.open->printed_through = RecordNumber{100};
+    found_printing(plan).expect("?SM"); // once a record is confirmed, the number is of this run
+}
+
 TEST(FeederTakeover, shouldDoWithoutTheCounter) {
     Story story{quick_settings(), takeover_plan()};
     story.reported_depth = 16;
