@@ -44,11 +44,22 @@ void Faults::cause_next() {
     const Fault fault = draw();
     --left_;
     if (!operator_.done() && cause(fault)) {
-        ++context_.counts.faults[static_cast<std::size_t>(fault)];
-        context_.trace.note(context_.now, "fault", static_cast<std::uint64_t>(fault));
-        context_.trace.say(context_.now, "fault", to_string(fault));
+        count(fault);
     }
     schedule();
+}
+
+void Faults::count(Fault fault) {
+    ++context_.counts.faults[static_cast<std::size_t>(fault)];
+    context_.trace.note(context_.now, "fault", static_cast<std::uint64_t>(fault));
+    context_.trace.say(context_.now, "fault", to_string(fault));
+}
+
+/// Behind a gap, the number tells where the printer is and the counter how much of that it has printed. When the number is
+/// lost before linefeed has settled the records, the counter alone would have to tell both: nobody can know.
+bool Faults::memory_may_go() {
+    gap_ = gap_ && (host_.running() || host_.records_open());
+    return !gap_;
 }
 
 void Faults::excuse_for(Duration duration) {
@@ -60,30 +71,27 @@ void Faults::repair_later(Fault fault, Duration low, Duration high, std::uint64_
     context_.after(random_.spread(low, high), EventKind::fault_ends, static_cast<std::uint64_t>(fault), detail);
 }
 
-bool Faults::two_disasters(bool& this_one, bool other_one) {
-    if (host_.running() && host_.phase() == feeder::Phase::printing && interruption_ != context_.counts.runs) {
-        interruption_ = context_.counts.runs;
-        memory_lost_ = others_printed_ = false;
-        other_one = false;
-    }
-    this_one = this_one || !other_one;
-    return other_one;
-}
-
 bool Faults::cause(Fault fault) {
     switch (fault) {
     case Fault::operator_stop:
     case Fault::stop_and_go:
+    case Fault::stop_under_refill:
     case Fault::panel_start:
+    case Fault::start_between_looks:
     case Fault::printer_error:
     case Fault::cover_opened:
     case Fault::nozzle_closed:
     case Fault::printer_restart:
-    case Fault::another_job:
     case Fault::another_printer:
-    case Fault::second_client:
     case Fault::belt_pause:
         return cause_at_printer(fault);
+    case Fault::another_job:
+    case Fault::second_client:
+    case Fault::foreign_stop:
+    case Fault::foreign_flush:
+    case Fault::foreign_stop_point:
+    case Fault::foreign_record:
+        return cause_by_others(fault);
     case Fault::stop_by_linefeed:
     case Fault::process_kill:
     case Fault::kill_in_step:
@@ -117,6 +125,12 @@ bool Faults::cause_at_printer(Fault fault) {
             repair_later(fault, 1ms, 2s);
         }
         return printing;
+    case Fault::stop_under_refill:
+        stop_under_refill();
+        return false; // counted when it happens
+    case Fault::start_between_looks:
+        start_between_looks();
+        return false; // counted when it happens
     case Fault::panel_start: {
         // Nobody starts the line while the operator is asked what is on the last product.
         const bool may = !printing && host_.ending().in_doubt.empty();
@@ -136,21 +150,19 @@ bool Faults::cause_at_printer(Fault fault) {
         press(Action::nozzle_close);
         return true;
     case Fault::printer_restart:
-        if (two_disasters(memory_lost_, others_printed_)) {
+        if (!memory_may_go()) {
             return false;
         }
         line_.act([](PrinterModel& model, Instant now) { model.power_cycle(now); });
         return true;
-    case Fault::another_job:
-        return another_job();
     case Fault::another_printer:
+        if (!memory_may_go()) {
+            return false;
+        }
         line_.exchange_printer();
         if (random_.chance(0.5)) {
             repair_later(fault, 1s, 200s);
         }
-        return true;
-    case Fault::second_client:
-        ask_as_second_client();
         return true;
     case Fault::belt_pause:
         line_.pause_belt(random_.spread(Duration{10ms}, Duration{60s}));
@@ -160,25 +172,29 @@ bool Faults::cause_at_printer(Fault fault) {
     }
 }
 
-bool Faults::another_job() {
-    const auto status = line_.look().machine_status();
-    if (host_.running() || status.machine != MachineState::ready_to_print || !host_.ending().in_doubt.empty() ||
-        two_disasters(others_printed_, memory_lost_)) {
-        return false;
-    }
-    const auto count = static_cast<std::uint32_t>(random_.spread(1, context_.scenario.printer.depth - 1));
-    // Numbers that by chance continue ours exactly would tell even an expert nothing: they start anywhere else.
-    const std::uint32_t first = random_.chance(0.5) ? 1 : static_cast<std::uint32_t>(random_.spread(2, 1U << 30U));
-    line_.another_job(first, count);
-    return true;
+/// Stop, and GO again, with records on the way between the two: the printer goes on behind those that it has thrown away.
+void Faults::stop_under_refill() {
+    line_.at(Line::Moment::record_while_printing, some_records(), context_.now + 10s, [this] {
+        count(Fault::stop_under_refill);
+        gap_ = true;
+        line_.act([](PrinterModel& model, Instant now) { model.press(Action::stop_print, now); });
+        repair_later(Fault::stop_under_refill, 1ms, 600ms);
+    });
 }
 
-void Faults::ask_as_second_client() {
-    static constexpr const char* frames[]{"^0?SM", "^0?SM", "^0?RS", "^0?CC", "^0?VS",
-                                          "^0!LN", "^0!EM", "^0!EQ", "^0!US", "^0?EL"};
-    for (std::uint64_t i = random_.between(1, 8); i > 0; --i) {
-        line_.other_client(frames[random_.below(std::size(frames))]);
-    }
+/// While linefeed looks at what an interruption has left in the FIFO, somebody starts the printer, and stops it again.
+void Faults::start_between_looks() {
+    line_.at(Line::Moment::count_over_records, 0, context_.now + 120s, [this] {
+        count(Fault::start_between_looks);
+        line_.act([](PrinterModel& model, Instant now) { model.press(Action::start_print, now); });
+        excuse_for(5s);
+        const Duration first_product = std::max<Duration>(20ms, context_.scenario.period);
+        repair_later(Fault::start_between_looks, first_product, first_product * 3);
+    });
+}
+
+std::uint64_t Faults::some_records() {
+    return random_.chance(0.5) ? 0 : random_.below(context_.scenario.printer.depth);
 }
 
 void Faults::repair(Fault fault, std::uint64_t) {
@@ -186,8 +202,12 @@ void Faults::repair(Fault fault, std::uint64_t) {
     context_.trace.note(context_.now, "repair", static_cast<std::uint64_t>(fault));
     switch (fault) {
     case Fault::stop_and_go:
+    case Fault::stop_under_refill:
         line_.act([](PrinterModel& model, Instant now) { model.press(Action::start_print, now); });
         excuse_for(5s); // what was in the FIFO is gone
+        return;
+    case Fault::start_between_looks:
+        line_.act([](PrinterModel& model, Instant now) { model.press(Action::stop_print, now); });
         return;
     case Fault::another_printer:
         line_.exchange_printer();
@@ -198,6 +218,12 @@ void Faults::repair(Fault fault, std::uint64_t) {
         return;
     case Fault::disk_full:
         RamDisk::instance().set_full(false);
+        return;
+    case Fault::slow_disk:
+        if (host_.running()) {
+            host_.kill();
+            count(Fault::process_kill);
+        }
         return;
     case Fault::link_cut:
     case Fault::link_silent:

@@ -15,6 +15,8 @@ public:
 
     /// An event of kind next_fault.
     void cause_next();
+    /// The line is free, before the operator enters the command: another host may have waited for that.
+    void line_is_free();
     /// An event of kind fault_ends.
     void repair(Fault fault, std::uint64_t detail);
     /// All faults have happened, and all is repaired.
@@ -24,17 +26,28 @@ public:
 
 private:
     void schedule();
-    /// The printer loses its memory and prints for somebody else between two runs: then its counter alone would have to
-    /// tell whose prints they were. Known limit: the simulation lets only one of the two happen.
-    [[nodiscard]] bool two_disasters(bool& this_one, bool other_one);
     [[nodiscard]] Fault draw();
     /// False if it cannot happen now.
     [[nodiscard]] bool cause(Fault fault);
     [[nodiscard]] bool cause_at_printer(Fault fault);
+    [[nodiscard]] bool cause_by_others(Fault fault);
     [[nodiscard]] bool cause_at_host(Fault fault);
     [[nodiscard]] bool cause_on_the_way(Fault fault);
+    void count(Fault fault);
+    void stop_under_refill();
+    void start_between_looks();
+    [[nodiscard]] bool kill_under_fill();
+    /// So many records later than the next, often none.
+    [[nodiscard]] std::uint64_t some_records();
     [[nodiscard]] bool another_job();
     void ask_as_second_client();
+    [[nodiscard]] std::uint64_t newest_in_printer();
+    [[nodiscard]] bool gap_would_show();
+    [[nodiscard]] bool memory_may_go();
+    [[nodiscard]] bool foreign_flush();
+    void flush();
+    [[nodiscard]] std::uint64_t foreign_stop_point();
+    [[nodiscard]] std::uint64_t foreign_number();
     void repair_later(Fault fault, Duration low, Duration high, std::uint64_t detail = 0);
     void excuse_for(Duration duration);
 
@@ -48,9 +61,9 @@ private:
     std::uint32_t left_;
     std::uint32_t under_repair_ = 0;
     Instant excused_until_{};
-    std::uint64_t interruption_ = 0; ///< starts of the program when the following were set
-    bool memory_lost_ = false;
-    bool others_printed_ = false;
+    Instant answers_late_until_{};
+    bool job_waits_ = false; ///< another host has one to print
+    bool gap_ = false; ///< the printer may have gone on behind a gap that linefeed has not yet settled
 };
 
 } // namespace linefeed::simulation

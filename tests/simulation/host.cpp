@@ -96,7 +96,8 @@ void Host::start(const cli::OperatorWord& word) {
     word_ = word;
     word_counts_ = word.given();
     interrupted_ = false;
-    ending_ = {OutcomeCode::nothing_to_print, {}, false};
+    ending_ = Ending{};
+    ending_.code = OutcomeCode::nothing_to_print;
     if (!open_spool()) {
         end_process(OutcomeCode::storage_failed);
         return;
@@ -122,11 +123,17 @@ void Host::next_run() {
             const auto job = spool_->job(job_);
             LINEFEED_ASSERT(job && *job);
             if (const auto settled = cli::settle_by_operator(*spool_, **job, word_); !settled) {
-                if (settled.error().kind == FailureKind::usage) {
+                if (settled.error().kind != FailureKind::usage) {
+                    end_process(OutcomeCode::storage_failed);
+                    return;
+                }
+                const bool asks_for_ranges =
+                    !word_.last_printed.empty() && settled.error().message.find("--printed") != std::string::npos;
+                if (!asks_for_ranges) {
                     judge_.violation("the operator's word was refused: " + settled.error().message);
                 }
-                end_process(OutcomeCode::storage_failed);
-                return;
+                ending_.word_refused = true;
+                break;
             }
             ending_.code = OutcomeCode::nothing_to_print;
             continue;
@@ -146,8 +153,10 @@ void Host::end_process(OutcomeCode code) {
     ending_.code = code;
     ending_.in_doubt.clear();
     ending_.complete = false;
+    records_open_ = true;
     if (spool_) {
         if (const auto state = spool_->ledger_state(job_)) {
+            records_open_ = state->count(spool::RecordState::open) > RecordCount{0};
             judge_.check_ledger(*state);
             ending_.in_doubt = state->ranges(spool::RecordState::in_doubt);
             for (const RecordRange& doubt : ending_.in_doubt) {
@@ -235,6 +244,7 @@ void Host::die() {
     RamDisk::instance().process_gone();
     paused_until_ = {};
     ending_ = {OutcomeCode::link_lost, {}, false}; // the operator is told nothing
+    records_open_ = true;
     context_.after(random_.spread(Duration{std::chrono::milliseconds{50}}, Duration{std::chrono::seconds{60}}),
                    EventKind::operator_acts);
 }

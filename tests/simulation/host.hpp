@@ -23,7 +23,8 @@ namespace linefeed::simulation {
 struct Ending {
     feeder::OutcomeCode code = feeder::OutcomeCode::finished;
     std::vector<RecordRange> in_doubt;
-    bool complete = false; ///< nothing is left to print
+    bool complete = false;     ///< nothing is left to print
+    bool word_refused = false; ///< "last product" says too much or too little: the products must be named
 };
 
 class Host {
@@ -38,6 +39,8 @@ public:
     [[nodiscard]] bool running() const { return run_ != nullptr; }
     [[nodiscard]] const Ending& ending() const { return ending_; }
     [[nodiscard]] std::optional<feeder::Phase> phase() const;
+    /// Records were issued whose fate the ledger does not know. Precondition: not running.
+    [[nodiscard]] bool records_open() const { return records_open_; }
     /// Nothing is left to be sent in this run.
     [[nodiscard]] bool all_sent() const;
 
@@ -97,6 +100,7 @@ private:
     cli::OperatorWord word_;
     bool word_counts_ = false;
     bool interrupted_ = false;
+    bool records_open_ = false;
     Instant paused_until_{};
     std::uint64_t generation_ = 0;
     std::optional<std::uint64_t> steps_to_live_;

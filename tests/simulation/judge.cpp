@@ -30,6 +30,7 @@ Judge::Product* Judge::product(RecordNumber number) {
 void Judge::printed(RecordNumber number, std::string_view text) {
     if (text.empty() || text.front() != 'R') {
         ++context_.counts.other_prints; // of another job, or the blank behind the last record
+        last_is_ours_ = false;
         return;
     }
     ++context_.counts.prints;
@@ -45,11 +46,12 @@ void Judge::printed(RecordNumber number, std::string_view text) {
     ++it->complete;
     last_ = number;
     last_complete_ = true;
+    last_is_ours_ = true;
 }
 
 void Judge::print_aborted(RecordNumber number) {
     Product* it = product(number);
-    if (it != nullptr && number == last_ && last_complete_) {
+    if (it != nullptr && last_is_ours_ && number == last_ && last_complete_) {
         --it->complete;
         ++it->aborted;
         last_complete_ = false;
@@ -97,6 +99,10 @@ bool Judge::unbroken(RecordNumber first, RecordNumber last) const {
 
 void Judge::accepts_part(RecordNumber number) {
     product(number)->may_be_missing = true;
+}
+
+bool Judge::is_on_a_product(RecordNumber number) const {
+    return products_[number.value() - context_.scenario.first()].complete > 0;
 }
 
 void Judge::check_ledger(const spool::LedgerState& state) {

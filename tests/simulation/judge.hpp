@@ -31,6 +31,8 @@ public:
     [[nodiscard]] bool unbroken(RecordNumber first, RecordNumber last) const;
     /// He takes the record, of which the last product carries a part, for printed.
     void accepts_part(RecordNumber number);
+    /// Printed to the end.
+    [[nodiscard]] bool is_on_a_product(RecordNumber number) const;
 
     /// Every record that the ledger calls printed is on a product, every record that it calls unused is on none.
     void check_ledger(const spool::LedgerState& state);
@@ -59,6 +61,7 @@ private:
     std::vector<Product> products_;
     RecordNumber last_;
     bool last_complete_ = true;
+    bool last_is_ours_ = true; ///< the product printed last of all carries a record of the job
     std::string expected_;
     std::optional<std::string> violation_;
 };

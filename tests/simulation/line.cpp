@@ -4,28 +4,18 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 
 namespace linefeed::simulation {
 
 using simulator::PrinterModel;
-
-namespace {
-
-simulator::PrinterSettings other_printer(simulator::PrinterSettings settings) {
-    settings.serial_number = "204812";
-    settings.total_prints += 1234567;
-    return settings;
-}
-
-} // namespace
 
 Line::Line(Context& context, Judge& judge, Wire& wire, Random random)
     : context_(context)
     , judge_(judge)
     , wire_(wire)
     , random_(random)
-    , printers_{std::make_unique<PrinterModel>(context.scenario.printer, context.now),
-                std::make_unique<PrinterModel>(other_printer(context.scenario.printer), context.now)}
+    , printers_{std::make_unique<PrinterModel>(context.scenario.printer, context.now), nullptr}
     , printer_(printers_[0].get()) {
     if (context.scenario.bursts) {
         context_.after(std::chrono::seconds{5}, EventKind::belt_changes);
@@ -44,6 +34,9 @@ void Line::receive(std::uint64_t connection, std::string_view bytes) {
     while (true) {
         const auto result = client.decoder.next(bytes);
         if (const auto* frame = std::get_if<protocol::Frame>(&result)) {
+            if (deed_ && connection != other_client_id) {
+                about_to_take(*frame);
+            }
             printer_->receive({connection}, *frame, context_.now);
         } else if (std::holds_alternative<std::monostate>(result)) {
             break;
@@ -67,15 +60,80 @@ void Line::other_client(std::string_view frame) {
     receive(other_client_id, std::string{frame} + '\r');
 }
 
-void Line::another_job(std::uint32_t first, std::uint32_t count) {
+void Line::interfere(std::string_view frame) {
+    context_.trace.say(context_.now, "another client", frame);
+    others_interfere_ = true;
+    other_client(frame);
+}
+
+void Line::another_job(std::uint64_t first, std::uint64_t count) {
+    context_.trace.note(context_.now, "another job", first, count);
     others_interfere_ = true;
     other_client("^0!EQ");
     other_client("^0!FF");
     other_client("^0=CM" + std::to_string(first + count - 1));
-    for (std::uint32_t i = 0; i < count; ++i) {
+    for (std::uint64_t i = 0; i < count; ++i) {
         other_client("^0=MR" + std::to_string(first + i) + "\tX" + std::to_string(i));
     }
     other_client("^0!GO");
+}
+
+void Line::at(Moment moment, std::uint64_t skipped, Instant until, std::function<void()> deed) {
+    deed_ = std::move(deed);
+    deed_at_ = moment;
+    moments_skipped_ = skipped;
+    deed_until_ = until;
+}
+
+bool Line::is_moment(const protocol::Frame& frame) const {
+    const bool record = frame.group == protocol::Group::parameter && frame.payload.starts_with("MR");
+    switch (deed_at_) {
+    case Moment::record:
+        return record;
+    case Moment::record_while_printing:
+        return record && printer_->printing();
+    case Moment::count_over_records:
+        return frame.group == protocol::Group::inquiry && frame.payload == "CC" && !printer_->printing() &&
+               printer_->fifo().records() > 0;
+    }
+    assertion_failed("Moment", __FILE__, __LINE__);
+}
+
+void Line::about_to_take(const protocol::Frame& frame) {
+    if (context_.now > deed_until_) {
+        deed_ = nullptr;
+    } else if (is_moment(frame) && moments_skipped_-- == 0) {
+        std::exchange(deed_, nullptr)();
+    }
+}
+
+/// A printer of the same make that does the same work: its numbers and its counter may look like ours.
+std::unique_ptr<PrinterModel> Line::sister_printer() {
+    constexpr Duration earlier = std::chrono::seconds{10};
+    const std::uint32_t depth = context_.scenario.printer.depth;
+    const auto behind = static_cast<std::uint32_t>(random_.below(depth));
+    simulator::PrinterSettings settings = context_.scenario.printer;
+    settings.serial_number = "204812";
+    settings.total_prints = random_.chance(0.2) ? settings.total_prints + 1234567 : printer_->total_prints() - behind;
+    auto sister = std::make_unique<PrinterModel>(settings, context_.now - earlier);
+    if (random_.chance(0.5)) { // not fresh from power-up: it has just printed a record of about this number
+        const std::uint64_t number =
+            std::max<std::uint64_t>(judge_.last().value(), context_.scenario.first() + behind) - behind;
+        const std::string record = "^0=MR" + std::to_string(number) + "\tX\r^0!GO\r";
+        protocol::FrameDecoder decoder;
+        std::string_view bytes = record;
+        while (!bytes.empty()) {
+            const auto result = decoder.next(bytes);
+            if (const auto* frame = std::get_if<protocol::Frame>(&result)) {
+                sister->receive({other_client_id}, *frame, context_.now - earlier);
+            }
+        }
+        (void)sister->print_go(context_.now - earlier / 2);
+        sister->press(protocol::Action::stop_print, context_.now);
+        sister->press(protocol::Action::acknowledge_errors, context_.now);
+    }
+    sister->clear_effects();
+    return sister;
 }
 
 void Line::exchange_printer() {
@@ -84,9 +142,15 @@ void Line::exchange_printer() {
     wire_.printer_closes(random_.chance(0.5));
     clients_.clear();
     at_address_ = 1 - at_address_;
-    printer_ = printers_[at_address_].get();
-    printer_->power_cycle(context_.now);
-    printer_->clear_effects();
+    others_interfere_ = false;
+    if (printers_[at_address_] == nullptr) {
+        printers_[at_address_] = sister_printer();
+        printer_ = printers_[at_address_].get();
+    } else {
+        printer_ = printers_[at_address_].get();
+        printer_->power_cycle(context_.now);
+        printer_->clear_effects();
+    }
     carry_out();
 }
 
@@ -114,7 +178,7 @@ void Line::carry_out(simulator::Effect& effect) {
         judge_.print_aborted(aborted->number);
     } else if (std::holds_alternative<simulator::Underrun>(effect)) {
         context_.trace.note(context_.now, "underrun");
-        judge_.underrun(underrun_is_explained());
+        judge_.underrun(others_interfere_ || underrun_is_explained());
     } else if (const auto* error = std::get_if<simulator::ErrorRaised>(&effect)) {
         const std::uint32_t code = error->error.code_without_bit_24();
         context_.trace.note(context_.now, "error", code);
@@ -127,6 +191,7 @@ void Line::carry_out(simulator::Effect& effect) {
     } else if (const auto* state = std::get_if<simulator::StateChanged>(&effect)) {
         context_.trace.note(context_.now, "machine state", static_cast<std::uint64_t>(state->machine),
                             state->cover_open ? 1 : 0);
+        others_interfere_ = others_interfere_ && (printer_->printing() || printer_->fifo().records() > 0);
     } else if (std::holds_alternative<simulator::ConnectionsLost>(effect)) {
         context_.trace.note(context_.now, "printer restarted");
         wire_.printer_closes(random_.chance(0.5));

@@ -42,14 +42,29 @@ public:
         deed(*printer_, context_.now);
         carry_out();
     }
+    /// What of the host may be about to reach the printer.
+    enum class Moment {
+        record,
+        record_while_printing,
+        count_over_records, ///< `?CC`, the end of a look at a printer that stands, with records in its FIFO
+    };
+    /// Calls `deed` at the next such moment, or `skipped` moments later; once, and not behind `until`.
+    void at(Moment moment, std::uint64_t skipped, Instant until, std::function<void()> deed);
     /// Another client sends a frame such as "^0?SM"; the answer goes to it.
     void other_client(std::string_view frame);
+    /// The same, but the frame changes what is printed.
+    void interfere(std::string_view frame);
+    /// Another client has interfered, and the printer has not been stopped since.
+    [[nodiscard]] bool others_interfere() const { return others_interfere_; }
     /// Another host prints `count` records numbered from `first`.
-    void another_job(std::uint32_t first, std::uint32_t count);
+    void another_job(std::uint64_t first, std::uint64_t count);
     /// Takes the printer away and puts another there (or the first one back).
     void exchange_printer();
 
 private:
+    void about_to_take(const protocol::Frame& frame);
+    [[nodiscard]] bool is_moment(const protocol::Frame& frame) const;
+    [[nodiscard]] std::unique_ptr<simulator::PrinterModel> sister_printer();
     void carry_out();
     void carry_out(simulator::Effect& effect);
     void move_belt();
@@ -73,7 +88,12 @@ private:
     Instant product_due_ = Instant::max();
     Instant belt_stands_until_{};
     bool fast_ = false;
-    bool others_interfere_ = false; ///< numbers may be out of order because of others
+    bool others_interfere_ = false;
+    // at()
+    std::function<void()> deed_;
+    Moment deed_at_ = Moment::record;
+    std::uint64_t moments_skipped_ = 0;
+    Instant deed_until_{};
     Instant printing_since_{};
 };
 

@@ -1,16 +1,18 @@
-// linefeed_simulation: many years of production in an afternoon. Runs seeds and prints what came of them; exit code 1
-// on a violation.
+// linefeed_simulation: many years of production in an afternoon. Runs seeds and prints what came of them; exit code 1 on
+// a violation.
 //
-//   linefeed_simulation --seed N --trace        one seed with everything that happens
-//   linefeed_simulation --from A --count N      N seeds
-//   linefeed_simulation --hours H               seeds until H hours of production are simulated
-//   linefeed_simulation --regressions FILE      the seeds of a list (first word of a line; # begins a comment)
-//   linefeed_simulation … --skip FILE           without the seeds of this list: findings that are known and not yet
-//   mended linefeed_simulation --twice                 each seed twice; the traces must agree linefeed_simulation
-//   --profile line          the speed at 1 000 prints/s without faults
+// clang-format off
+//   linefeed_simulation --seed N --trace      one seed with everything that happens
+//   linefeed_simulation --from A --count N    N seeds
+//   linefeed_simulation --hours H             seeds until the line has printed for H hours
+//   linefeed_simulation --regressions FILE    the seeds of a list (first word of a line; # begins a comment)
+//   linefeed_simulation … --skip FILE         without the seeds of this list: findings known and not yet mended
+//   linefeed_simulation … --twice             each seed twice; the traces must agree
+//   linefeed_simulation --profile line        the speed at 1 000 prints/s without faults
 //
 // The long suite: one such program per core, with ranges that do not overlap, e.g.
 //   for core in 1 2; do linefeed_simulation --from ${core}000000000 --hours 1000 & done; wait
+// clang-format on
 #include "world.hpp"
 
 #include <CLI/CLI.hpp>
@@ -67,7 +69,7 @@ public:
                 std::chrono::duration_cast<Duration>(std::chrono::duration<double, std::ratio<3600>>{options_.hours});
             const std::uint64_t count = options_.count == 0 && options_.hours == 0 ? 100 : options_.count;
             for (std::uint64_t i = 0;
-                 (i < count || counts_.simulated < wanted) && !(options_.stop_at_first && violations_ > 0); ++i) {
+                 (i < count || counts_.printing < wanted) && !(options_.stop_at_first && violations_ > 0); ++i) {
                 const std::uint64_t seed = options_.from + i;
                 if (std::find(skipped.begin(), skipped.end(), seed) == skipped.end()) {
                     run_one(seed);
@@ -162,7 +164,7 @@ int main(int argc, char** argv) {
     app.add_option("--seed", options.seed, "Run this seed only");
     app.add_option("--from", options.from, "First seed");
     app.add_option("--count", options.count, "How many seeds");
-    app.add_option("--hours", options.hours, "Go on until so many hours are simulated");
+    app.add_option("--hours", options.hours, "Go on until the line has printed for so many hours");
     app.add_option("--regressions", options.regressions, "Run the seeds of this file")->check(CLI::ExistingFile);
     app.add_option("--skip", options.skip, "Leave the seeds of this file out")->check(CLI::ExistingFile);
     app.add_option("--profile", options.profile, "mixed or line")->check(CLI::IsMember({"mixed", "line"}));

@@ -28,7 +28,7 @@ caught=$(run bin/linefeed_simulation)
 missed=0
 total=0
 printf '%-34s %-8s %s\n' mistake "at seed" "caught by"
-for patch in "$here"/mutations/*"$pattern"*.patch; do
+for patch in "$here"/mutations/*${pattern}*.patch; do
     name=$(basename "$patch" .patch)
     total=$((total + 1))
     file=$(sed -n '1s,^--- a/,,p' "$patch")

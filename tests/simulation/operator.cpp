@@ -92,18 +92,24 @@ cli::OperatorWord Operator::decides() {
         return word;
     }
     const RecordNumber first = doubt.front().first();
-    // A jump in the numbers on the products: "the last product" would say too much.
-    const bool jump =
-        judge_.last() >= first && judge_.last() <= doubt.back().last() && !judge_.unbroken(first, judge_.last());
-    const std::uint64_t dice = jump ? random_.below(2) : random_.below(100);
-    if (jump ? dice == 0 : dice < context_.scenario.skips_percent) {
+    // A jump in the numbers on the products: "the last product" would say too much. So would one that he has named before.
+    const bool named_before = judge_.last() > doubt.back().last() && judge_.last() <= named_;
+    const bool jump = judge_.last() >= first && judge_.last() <= doubt.back().last() &&
+                      !judge_.unbroken(first, judge_.last());
+    const std::uint64_t dice = random_.below(100);
+    if (dice < context_.scenario.skips_percent) {
         word.policy = cli::InDoubtPolicy::skip;
         std::for_each(doubt.begin(), doubt.end(), [this](const RecordRange& range) { judge_.will_skip(range); });
         return word;
     }
-    if (jump || dice < context_.scenario.skips_percent + context_.scenario.reprints_percent) {
+    if (dice < context_.scenario.skips_percent + context_.scenario.reprints_percent) {
         word.policy = cli::InDoubtPolicy::reprint;
         std::for_each(doubt.begin(), doubt.end(), [this](const RecordRange& range) { judge_.will_reprint(range); });
+        return word;
+    }
+    if (jump || named_before || host_.ending().word_refused || random_.chance(0.2)) {
+        word.printed = names_products(doubt);
+        context_.trace.say(context_.now, "products", *word.printed);
         return word;
     }
     RecordNumber last = judge_.last();
@@ -121,6 +127,21 @@ cli::OperatorWord Operator::decides() {
     word.last_printed = std::to_string(std::max(last, before_first).value());
     context_.trace.say(context_.now, "last product", word.last_printed);
     return word;
+}
+
+/// The records in doubt that are on products, for --printed.
+std::string Operator::names_products(const std::vector<RecordRange>& doubt) {
+    std::string names;
+    for (const RecordRange& range : doubt) {
+        for (std::uint64_t i = 0; i < range.count().value(); ++i) {
+            const RecordNumber number = range.first() + RecordCount{i};
+            if (judge_.is_on_a_product(number)) {
+                named_ = std::max(named_, number);
+                names += (names.empty() ? "" : ",") + std::to_string(number.value());
+            }
+        }
+    }
+    return names.empty() ? "none" : names;
 }
 
 } // namespace linefeed::simulation

@@ -24,6 +24,7 @@ public:
 private:
     [[nodiscard]] bool puts_printer_in_order();
     [[nodiscard]] cli::OperatorWord decides();
+    [[nodiscard]] std::string names_products(const std::vector<RecordRange>& doubt);
     void look_again();
 
     Context& context_;
@@ -33,7 +34,7 @@ private:
     Random random_;
     bool host_has_power_ = true;
     bool done_ = false;
-    std::uint32_t word_tries_ = 0;
+    RecordNumber named_; ///< the last one that he has named as printed
 };
 
 } // namespace linefeed::simulation

@@ -10,10 +10,12 @@ using namespace std::chrono_literals;
 
 std::string_view to_string(Fault fault) {
     constexpr std::array<std::string_view, fault_kinds> names{
-        "operator stop", "stop and go",     "panel start",     "stop by linefeed", "printer error", "cover opened",
-        "nozzle closed", "printer restart", "another job",     "another printer",  "second client", "process kill",
-        "kill in step",  "host power loss", "both power loss", "link cut",         "link silent",   "link stall",
-        "host pause",    "slow disk",       "disk full",       "belt pause"};
+        "operator stop",   "stop and go",   "stop under refill",  "panel start", "start between looks", "stop by linefeed",
+        "printer error",   "cover opened",  "nozzle closed",      "printer restart", "another job",
+        "another printer", "second client", "foreign stop",       "foreign flush",  "foreign stop point",
+        "foreign record",  "process kill",  "kill in step",       "host power loss", "both power loss",
+        "link cut",        "link silent",   "link stall",         "host pause",     "slow disk",
+        "disk full",       "belt pause"};
     return names[static_cast<std::size_t>(fault)];
 }
 
@@ -56,15 +58,6 @@ void draw_faults(Scenario& scenario, Random random) {
     for (std::uint32_t& weight : scenario.weights) {
         weight = random.chance(0.35) ? static_cast<std::uint32_t>(random.spread(1, 32)) : 0;
     }
-    if (scenario.printer.habits.ignore_stop_at || scenario.printer.habits.stop_at_only_while_printing) {
-        // Known limit: without a stop point, a stop and a start at the panel between two status inquiries cannot be
-        // seen.
-        scenario.weights[static_cast<std::size_t>(Fault::stop_and_go)] = 0;
-        scenario.weights[static_cast<std::size_t>(Fault::panel_start)] = 0;
-    }
-    if (scenario.printer.habits.line_end == simulator::LineEnd::lf_cr) {
-        scenario.weights[static_cast<std::size_t>(Fault::second_client)] = 0; // may switch the length prefix on
-    }
     if (std::all_of(scenario.weights.begin(), scenario.weights.end(), [](std::uint32_t w) { return w == 0; })) {
         scenario.weights[random.below(static_cast<std::uint64_t>(Fault::printer_restart))] = 1;
     }
@@ -78,6 +71,10 @@ void draw_printer(Scenario& scenario, Random random) {
     constexpr std::uint32_t depths[]{3, 16, 256};
     simulator::PrinterSettings& printer = scenario.printer;
     printer.depth = depths[random.below(3)];
+    if (printer.depth == 256 && random.chance(0.3)) {
+        printer.depth = 1024; // no such printer is known; but in a small FIFO no flush of another client would show
+        scenario.records = static_cast<std::uint32_t>(random.spread(1024, 8192));
+    }
     const Duration shortest = (scenario.period - scenario.period_jitter) / (scenario.bursts ? 2 : 1);
     printer.print_duration = std::min<Duration>(random.spread(Duration{200us}, Duration{200ms}), shortest * 6 / 10);
     printer.nozzle_opening_time = 30s;
@@ -87,16 +84,15 @@ void draw_printer(Scenario& scenario, Random random) {
     printer.echo_on = random.chance(0.1);
     printer.block_length = random.chance(0.05) ? static_cast<std::uint32_t>(random.between(1, 256)) : 0;
     simulator::Habits& habits = printer.habits;
-    habits.ignore_stop_at = random.chance(0.12);
-    habits.stop_at_only_while_printing = random.chance(0.12);
+    habits.ignore_stop_at = random.chance(0.2);
+    habits.stop_at_only_while_printing = random.chance(0.15);
     habits.stale_mail_status = random.chance(0.2);
     habits.sixth_value = random.chance(0.3);
     habits.five_value_status = random.chance(0.2);
     habits.error_bit_24 = random.chance(0.15);
     habits.abort_print_on_stop = random.chance(0.25);
     habits.standby_silent = random.chance(0.2);
-    // LF before the CR is the habit of old firmware, which knows no length prefix.
-    habits.line_end = static_cast<simulator::LineEnd>(printer.length_on ? random.below(2) : random.below(3));
+    habits.line_end = static_cast<simulator::LineEnd>(random.below(3));
 }
 
 } // namespace

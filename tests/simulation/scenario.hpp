@@ -16,7 +16,9 @@ namespace linefeed::simulation {
 enum class Fault : std::uint8_t {
     operator_stop,    ///< print-ready is switched off at the panel
     stop_and_go,      ///< off, and on again at once
+    stop_under_refill, ///< the same, exactly when records are about to arrive
     panel_start,      ///< somebody presses GO while linefeed does not print
+    start_between_looks, ///< while linefeed finds out what an interruption has left in the FIFO
     stop_by_linefeed, ///< Ctrl-C
     printer_error,
     cover_opened,
@@ -25,6 +27,11 @@ enum class Fault : std::uint8_t {
     another_job,     ///< another host prints a job on it while linefeed is away
     another_printer, ///< a different one stands at the address
     second_client,   ///< asks and switches modes at the same time
+    // The second client interferes:
+    foreign_stop,       ///< `!ST`
+    foreign_flush,      ///< `!FF` in mid-run
+    foreign_stop_point, ///< `=CM`, lower or higher
+    foreign_record,     ///< `=MR`, out of order or in our place
     process_kill,
     kill_in_step, ///< between two effects of one step
     host_power_loss,
@@ -33,7 +40,7 @@ enum class Fault : std::uint8_t {
     link_silent, ///< no byte comes through any more
     link_stall,  ///< bytes come late, but come
     host_pause,  ///< the process gets no time
-    slow_disk,
+    slow_disk, ///< sometimes the program is killed over it
     disk_full,
     belt_pause,
 };

@@ -36,6 +36,7 @@ public:
             check_progress();
         }
         if (!judge_.violated()) {
+            RamDisk::instance().set_full(false);
             host_.check_spool();
             judge_.check_complete();
         }
@@ -98,6 +99,7 @@ private:
             faults_.repair(static_cast<Fault>(event.a), event.b);
             return;
         case EventKind::operator_acts:
+            faults_.line_is_free();
             operator_.act();
             return;
         case EventKind::belt_changes:
@@ -125,7 +127,9 @@ private:
     }
 
     [[nodiscard]] bool underrun_is_explained() const {
-        const bool feeds = host_.phase() == feeder::Phase::printing && !host_.all_sent();
+        const auto phase = host_.phase();
+        const bool feeds =
+            (phase == feeder::Phase::starting || phase == feeder::Phase::printing) && !host_.all_sent();
         return !feeds || !context_.scenario.supply_is_sufficient() || faults_.excuses_underrun();
     }
 
