@@ -204,7 +204,7 @@ void Faults::repair(Fault fault, std::uint64_t) {
     case Fault::stop_and_go:
     case Fault::stop_under_refill:
         line_.act([](PrinterModel& model, Instant now) { model.press(Action::start_print, now); });
-        excuse_for(5s); // what was in the FIFO is gone
+        excuse_for(1h); // what was in the FIFO is gone, and a slow line notices it late
         return;
     case Fault::start_between_looks:
         line_.act([](PrinterModel& model, Instant now) { model.press(Action::stop_print, now); });

@@ -1,0 +1,171 @@
+// The feed thread in the steady state: refills, confirmations, intents, pages and polls go on, and the thread neither
+// allocates nor frees, locks, sleeps or touches a file (design, section 3). The whole daemon::JobRun prints over
+// loopback on the simulator, and every such call of its feed thread counts (watched_calls.hpp).
+#include "daemon/job_run.hpp"
+#include "link/printer_address.hpp"
+#include "protocol/mail_record.hpp"
+#include "simulator/simulator.hpp"
+#include "watched_calls.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <chrono>
+#include <csignal>
+#include <fcntl.h>
+#include <filesystem>
+#include <iostream>
+#include <mutex>
+#include <sys/socket.h>
+#include <thread>
+#include <unistd.h>
+
+namespace linefeed::realtime {
+namespace {
+
+constexpr std::uint32_t records = 8000;
+constexpr std::uint32_t records_of_page = 256;
+constexpr double print_gos_per_s = 1000;
+constexpr std::uint32_t warm_through = 1500; ///< several pages, intents and a `?RS`
+constexpr std::uint32_t steady_through = 6500;
+
+class FeedThreadTest : public testing::Test {
+protected:
+    void SetUp() override {
+        std::string name = std::filesystem::temp_directory_path() / "linefeed-feed-thread-XXXXXX";
+        ASSERT_NE(::mkdtemp(name.data()), nullptr);
+        directory_ = name;
+        spool_.emplace(spool::Spool::open(directory_ / "spool.db", {[] { return std::int64_t{1}; }, {}}).value());
+        import_job();
+
+        simulator::SimulatorSettings line;
+        line.port = "0";
+        line.conveyor.rate = print_gos_per_s;
+        line.printer.print_duration = std::chrono::microseconds{500};
+        simulator_.emplace(line);
+        address_ = "tcp://" + simulator_->open().value();
+        line_ = std::thread{[this] {
+            exempt_this_thread();
+            simulator_->run().value();
+        }};
+    }
+    void TearDown() override {
+        watch(false);
+        ::kill(::getpid(), SIGTERM); // the simulator serves until then
+        line_.join();
+        spool_.reset();
+        std::filesystem::remove_all(directory_);
+    }
+
+    void import_job() {
+        const protocol::MailRecordEncoder encoder{{protocol::Charset::latin1}, protocol::EscapeMode::backslash};
+        spool::JobSpec spec;
+        spec.source.path = "/data/serials.csv";
+        auto import = spool_->begin_import(spec).value();
+        for (std::uint32_t first = 1; first <= records; first += records_of_page) {
+            RecordPage page{RecordNumber{first}, {}, {}};
+            for (std::uint32_t number = first; number < std::min(records + 1, first + records_of_page); ++number) {
+                const std::string text = "SN-" + std::to_string(number);
+                encoder.append(page.frames, RecordNumber{number}, std::array{std::string_view{text}}).value();
+                page.ends.push_back(static_cast<std::uint32_t>(page.frames.size()));
+            }
+            import.add(page).value();
+        }
+        job_ = import.commit({}).value();
+    }
+
+    [[nodiscard]] daemon::JobRunSettings settings() const {
+        daemon::JobRunSettings settings;
+        settings.printer = link::parse_printer_address(address_).value();
+        settings.endpoints = link::resolve(settings.printer).value();
+        // Five times as many polls and refills as this rate needs.
+        settings.session.feeder.pacing.poll_max = std::chrono::milliseconds{5};
+        return settings;
+    }
+
+    std::filesystem::path directory_;
+    std::optional<spool::Spool> spool_;
+    spool::Job job_;
+    std::optional<simulator::Simulator> simulator_;
+    std::string address_;
+    std::thread line_;
+};
+
+/// Waits until the record is printed, or the run is over.
+void wait_for(daemon::JobRun& run, std::uint32_t printed) {
+    while (!run.finished() && run.progress().printed_through < RecordNumber{printed}) {
+        run.wait(10);
+    }
+}
+
+TEST_F(FeedThreadTest, shouldNeitherAllocateNorLockNorTouchAFileInTheSteadyState) {
+    daemon::JobRun run{*spool_, job_, job_.records, std::nullopt, settings()};
+    static_cast<void>(run.start());
+    wait_for(run, warm_through);
+    ASSERT_FALSE(run.finished());
+
+    const auto begun = std::chrono::steady_clock::now();
+    const RecordNumber sent_before = run.progress().sent_through;
+    watch(true);
+    wait_for(run, steady_through);
+    watch(false);
+    const CallCounts seen = counts();
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+    const RecordNumber sent_after = run.progress().sent_through;
+
+    wait_for(run, records);
+    run.join();
+    EXPECT_EQ(run.outcome().code, feeder::OutcomeCode::finished);
+
+    // It was at work: otherwise the counts would prove nothing.
+    std::cout << seconds << " s, " << seen.sends << " writes and " << seen.receives << " reads of the feed thread, "
+              << (sent_after - sent_before).value() << " records\n";
+    EXPECT_GE(seconds, 3.0);
+    EXPECT_GE((sent_after - sent_before).value(), 4000U);
+    EXPECT_GE(seen.sends, 500U);
+    EXPECT_GE(seen.receives, 500U);
+    for (std::size_t i = 0; i < call_kinds; ++i) {
+        EXPECT_EQ(seen.forbidden[i], 0U) << to_string(static_cast<Call>(i));
+    }
+    if (HasFailure()) {
+        std::cout << first_stacks();
+    }
+}
+
+TEST_F(FeedThreadTest, shouldTakeAStopFromAnotherThread) {
+    daemon::JobRun run{*spool_, job_, job_.records, std::nullopt, settings()};
+    static_cast<void>(run.start());
+    wait_for(run, 500);
+    std::thread{[&run] { run.request_stop(); }}.join();
+    run.join();
+    EXPECT_EQ(run.outcome().code, feeder::OutcomeCode::stop_requested);
+}
+
+/// The test of the test: a watched thread is caught.
+TEST(WatchedCalls, shouldCountWhatAWatchedThreadDoes) {
+    std::array<std::uint64_t, call_kinds> before = counts().forbidden;
+    std::thread{[] {
+        std::array<int, 2> pair{};
+        ASSERT_EQ(::socketpair(AF_UNIX, SOCK_STREAM, 0, pair.data()), 0);
+        ASSERT_EQ(::send(pair[0], "x", 1, 0), 1); // makes this thread a watched one
+        std::mutex mutex;
+        watch(true);
+        std::string text(1000, 'x');
+        { const std::lock_guard guard{mutex}; }
+        const int file = ::open("/dev/null", O_WRONLY);
+        ASSERT_EQ(::write(file, text.data(), text.size()), 1000);
+        std::string{}.swap(text);
+        watch(false);
+        ::close(file);
+        ::close(pair[0]);
+        ::close(pair[1]);
+    }}.join();
+    const CallCounts after = counts();
+    EXPECT_EQ(after.of(Call::allocate) - before[static_cast<std::size_t>(Call::allocate)], 1U);
+    EXPECT_EQ(after.of(Call::lock) - before[static_cast<std::size_t>(Call::lock)], 1U);
+    EXPECT_EQ(after.of(Call::file) - before[static_cast<std::size_t>(Call::file)], 2U);
+    EXPECT_GE(after.of(Call::release) - before[static_cast<std::size_t>(Call::release)], 1U);
+}
+
+} // namespace
+} // namespace linefeed::realtime
