@@ -18,6 +18,9 @@ class BoundedList {
     static_assert(std::is_nothrow_move_constructible_v<T>);
 
 public:
+    using value_type = T;
+    using const_iterator = const T*;
+
     BoundedList() noexcept {} // NOLINT(modernize-use-equals-default): defaulted, `{}` would fill the storage with zeros
     BoundedList(const BoundedList& other)
         : BoundedList() {

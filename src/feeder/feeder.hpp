@@ -149,7 +149,7 @@ private:
     [[nodiscard]] bool may_take_over() const;
     void begin_takeover(Instant now, Actions& out);
     void takeover_step(Instant now, Actions& out);
-    [[nodiscard]] bool printed_something_else() const;
+    [[nodiscard]] bool counter_contradicts() const;
     void taken_over(RecordRange range, RecordNumber durable_through, Instant now, Actions& out);
     void halt(Instant now, Actions& out);
 
@@ -218,6 +218,7 @@ private:
     bool taking_over_ = false;
     std::optional<std::uint64_t> in_printer_through_; ///< by the last `=SM`: printed + entries + 1
     RecordNumber taken_sent_through_;
+    RecordNumber number_before_count_; ///< reported before `?CC` was asked
 
     std::int32_t acknowledged_ = 0; ///< the error that `!EQ` was sent for
     RecordNumber left_over_;        ///< last printed number that stood in the printer before this run

@@ -18,8 +18,8 @@ constexpr int max_takeover_reads = 6;
 
 } // namespace
 
-/// The printer prints the earlier run and reports a record of it: it may be taken over. A number that stood there before
-/// the run says nothing.
+/// The printer prints the earlier run and reports a record of it: it may be taken over. A number that stood there
+/// before the run says nothing.
 bool Feeder::may_take_over() const {
     const OpenRun& run = *plan_.open;
     const bool left_over = run.printed_through < run.first && mail_.last_printed == run.last_printed_before;
@@ -29,6 +29,7 @@ bool Feeder::may_take_over() const {
 void Feeder::begin_takeover(Instant now, Actions& out) {
     enter(Phase::taking_over, now, settings_.finish_timeout);
     in_printer_through_.reset();
+    number_before_count_ = mail_.last_printed;
     ask(Parameter::SM, now, out);
 }
 
@@ -41,7 +42,7 @@ void Feeder::takeover_step(Instant now, Actions& out) {
         prints_earlier_run() && may_take_over() && fits && in_printer_through <= run.issued_through.value();
     const bool agrees = in_printer_through_ == in_printer_through;
     in_printer_through_ = in_printer_through;
-    if (!plausible || mail_reads_ > max_takeover_reads || printed_something_else()) {
+    if (!plausible || mail_reads_ > max_takeover_reads || counter_contradicts()) {
         halt(now, out);
     } else if (!agrees) {
         ask(Parameter::SM, now, out);
@@ -54,14 +55,17 @@ void Feeder::takeover_step(Instant now, Actions& out) {
     }
 }
 
-/// The total print counter has moved further than the records of this run account for.
-bool Feeder::printed_something_else() const {
+/// The total print counter has seen more prints than the records of this run account for, or fewer: something else is
+/// being printed. Its answer came between two of the number.
+bool Feeder::counter_contradicts() const {
     const OpenRun& run = *plan_.open;
     if (!run.total_before || !facts_.total_prints) {
         return false;
     }
     const std::uint32_t prints = *facts_.total_prints - *run.total_before;
-    return prints > (mail_.last_printed - run.first).value() + 1; // mail_ is newer than the counter
+    const std::uint64_t least = (number_before_count_ - run.first).value(); // without the print in progress
+    const std::uint64_t most = (mail_.last_printed - run.first).value() + 1;
+    return prints > most || (prints != 0 && prints < least); // 0: it does not move
 }
 
 /// The ledger has adopted the earlier run: printing goes on where it is.

@@ -193,6 +193,22 @@ TEST(FeederTakeover, shouldDoWithoutTheCounter) {
     story.expect("adopt run, printed through 151, sent through 154");
 }
 
+TEST(FeederTakeover, shouldHaltWhenFewerWerePrintedThanTheNumberClaims) {
+    const auto goes_on = [](std::uint32_t total) {
+        Story story = found_printing(takeover_plan(), total); // 150 of the run before the count of 800
+        story.take();
+        story.sm(2, 151, 200);
+        story.take();
+        story.sm(2, 151, 200);
+        return story.take().find("adopt run") == 0;
+    };
+    EXPECT_TRUE(goes_on(951)) << "printed on since";
+    EXPECT_TRUE(goes_on(950));
+    EXPECT_TRUE(goes_on(949)) << "the print in progress may not be counted";
+    EXPECT_FALSE(goes_on(948)) << "another job prints its numbers here";
+    EXPECT_TRUE(goes_on(800)) << "a counter that does not move tells nothing";
+}
+
 TEST(FeederTakeover, shouldStopThePrinterOnRequestWhileItIsTakenOver) {
     Story story = found_printing();
     story.sm(2, 151, 200);
