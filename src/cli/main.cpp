@@ -87,16 +87,18 @@ void add_print(CLI::App& app, PrintOptions& options, RawPrintOptions& raw) {
         ->allow_extra_args(false)
         ->delimiter(',')
         ->expected(0, 16);
-    print.add_option("--realtime-priority", options.real_time.priority,
-                     "Schedule the feed thread as SCHED_FIFO with this priority, if permitted")
+    print
+        .add_option("--realtime-priority", options.real_time.priority,
+                    "Schedule the feed thread as SCHED_FIFO with this priority, if permitted")
         ->check(CLI::Range(1, 99));
     print.add_option("--processor", options.real_time.processor, "Run the feed thread on this processor only, 0 ...")
         ->check(CLI::NonNegativeNumber);
     print.add_flag("--lock-memory", options.real_time.lock_memory, "Keep all memory in RAM, if permitted");
     print.add_option("--last-printed", options.operator_word.last_printed,
                      "Number or text of the record on the last product: settles records in doubt, where that tells");
-    print.add_option("--printed", options.operator_word.printed,
-                     "The records in doubt that are on products, all of them: N-M,N or none; the others will be printed");
+    print.add_option(
+        "--printed", options.operator_word.printed,
+        "The records in doubt that are on products, all of them: N-M,N or none; the others will be printed");
     print
         .add_option("--in-doubt", raw.in_doubt,
                     "Records in doubt: ask (stop with exit code 6), skip (do not print them again) or reprint")

@@ -55,8 +55,8 @@ void Faults::count(Fault fault) {
     context_.trace.say(context_.now, "fault", to_string(fault));
 }
 
-/// Behind a gap, the number tells where the printer is and the counter how much of that it has printed. When the number is
-/// lost before linefeed has settled the records, the counter alone would have to tell both: nobody can know.
+/// Behind a gap, the number tells where the printer is and the counter how much of that it has printed. When the number
+/// is lost before linefeed has settled the records, the counter alone would have to tell both: nobody can know.
 bool Faults::memory_may_go() {
     gap_ = gap_ && (host_.running() || host_.records_open());
     return !gap_;
@@ -123,6 +123,7 @@ bool Faults::cause_at_printer(Fault fault) {
         if (printing) {
             press(Action::stop_print);
             repair_later(fault, 1ms, 2s);
+            gap_ = true;
         }
         return printing;
     case Fault::stop_under_refill:
@@ -137,6 +138,7 @@ bool Faults::cause_at_printer(Fault fault) {
         if (may) {
             press(Action::start_print);
             excuse_for(5s);
+            gap_ = gap_ || host_.running();
         }
         return may;
     }
@@ -172,7 +174,8 @@ bool Faults::cause_at_printer(Fault fault) {
     }
 }
 
-/// Stop, and GO again, with records on the way between the two: the printer goes on behind those that it has thrown away.
+/// Stop, and GO again, with records on the way between the two: the printer goes on behind those that it has thrown
+/// away.
 void Faults::stop_under_refill() {
     line_.at(Line::Moment::record_while_printing, some_records(), context_.now + 10s, [this] {
         count(Fault::stop_under_refill);
@@ -186,6 +189,7 @@ void Faults::stop_under_refill() {
 void Faults::start_between_looks() {
     line_.at(Line::Moment::count_over_records, 0, context_.now + 120s, [this] {
         count(Fault::start_between_looks);
+        gap_ = true;
         line_.act([](PrinterModel& model, Instant now) { model.press(Action::start_print, now); });
         excuse_for(5s);
         const Duration first_product = std::max<Duration>(20ms, context_.scenario.period);

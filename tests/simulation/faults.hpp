@@ -63,7 +63,7 @@ private:
     Instant excused_until_{};
     Instant answers_late_until_{};
     bool job_waits_ = false; ///< another host has one to print
-    bool gap_ = false; ///< the printer may have gone on behind a gap that linefeed has not yet settled
+    bool gap_ = false;       ///< the printer may have gone on behind a gap that linefeed has not yet settled
 };
 
 } // namespace linefeed::simulation

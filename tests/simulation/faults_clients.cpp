@@ -1,7 +1,6 @@
-// Faults by others who use the printer: a second client that asks, switches modes or interferes with what is printed, and
-// another job while linefeed is away.
+// Faults by others who use the printer: a second client that asks, switches modes or interferes with what is printed,
+// and another job while linefeed is away.
 #include "faults.hpp"
-
 #include "feeder/pacing.hpp"
 
 #include <algorithm>
@@ -96,16 +95,18 @@ bool Faults::gap_would_show() {
     const Scenario& scenario = context_.scenario;
     const double depth = scenario.printer.depth;
     const double parts = (scenario.split > 0 ? 4.0 : 1.0) + (scenario.slow_write > 0 ? 4.0 : 0.0);
-    const double beat = depth / 8000;
+    const feeder::PacingSettings pacing;
+    const double beat = depth / (pacing.burst_rate * pacing.polls_per_buffer);
     const double spacing = 0.032; // of the samples in Pacing
     const double gap = beat + (beat < spacing ? spacing : 0) + 2 * seconds(scenario.latency.high) * parts;
-    const double unseen = 8 + 4 * feeder::PacingSettings{}.burst_rate * gap;
+    const double unseen = 8 + 4 * pacing.burst_rate * gap;
     return context_.now > answers_late_until_ && static_cast<double>(lost) > unseen;
 }
 
 bool Faults::foreign_flush() {
-    if (random_.chance(0.5)) { // with a refill right behind it: counted when it happens
-        line_.at(Line::Moment::record_while_printing, some_records(), context_.now + 10s, [this] {
+    if (random_.chance(0.75)) { // with a refill right behind it: counted when it happens
+        const Duration patience = context_.scenario.period * std::int64_t{context_.scenario.printer.depth} + 10s;
+        line_.at(Line::Moment::record_while_printing, some_records(), context_.now + patience, [this] {
             if (gap_would_show()) {
                 flush();
                 count(Fault::foreign_flush);

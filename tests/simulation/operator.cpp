@@ -92,10 +92,11 @@ cli::OperatorWord Operator::decides() {
         return word;
     }
     const RecordNumber first = doubt.front().first();
-    // A jump in the numbers on the products: "the last product" would say too much. So would one that he has named before.
+    // A jump in the numbers on the products: "the last product" would say too much. So would one that he has named
+    // before.
     const bool named_before = judge_.last() > doubt.back().last() && judge_.last() <= named_;
-    const bool jump = judge_.last() >= first && judge_.last() <= doubt.back().last() &&
-                      !judge_.unbroken(first, judge_.last());
+    const bool jump =
+        judge_.last() >= first && judge_.last() <= doubt.back().last() && !judge_.unbroken(first, judge_.last());
     const std::uint64_t dice = random_.below(100);
     if (dice < context_.scenario.skips_percent) {
         word.policy = cli::InDoubtPolicy::skip;

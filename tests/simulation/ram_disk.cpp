@@ -119,6 +119,12 @@ int RamDisk::write(RamFile& file, std::size_t offset, const char* data, std::siz
         if (file.bytes.capacity() < end) {
             file.bytes.reserve(end * 2);
         }
+    }
+    if (file.bytes.size() == offset) {
+        file.bytes.append(data, size);
+        return SQLITE_OK;
+    }
+    if (file.bytes.size() < end) {
         file.bytes.resize(end);
     }
     std::memcpy(file.bytes.data() + offset, data, size);

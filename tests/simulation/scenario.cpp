@@ -10,12 +10,12 @@ using namespace std::chrono_literals;
 
 std::string_view to_string(Fault fault) {
     constexpr std::array<std::string_view, fault_kinds> names{
-        "operator stop",   "stop and go",   "stop under refill",  "panel start", "start between looks", "stop by linefeed",
-        "printer error",   "cover opened",  "nozzle closed",      "printer restart", "another job",
-        "another printer", "second client", "foreign stop",       "foreign flush",  "foreign stop point",
-        "foreign record",  "process kill",  "kill in step",       "host power loss", "both power loss",
-        "link cut",        "link silent",   "link stall",         "host pause",     "slow disk",
-        "disk full",       "belt pause"};
+        "operator stop",      "stop and go",     "stop under refill", "panel start",   "start between looks",
+        "stop by linefeed",   "printer error",   "cover opened",      "nozzle closed", "printer restart",
+        "another job",        "another printer", "second client",     "foreign stop",  "foreign flush",
+        "foreign stop point", "foreign record",  "process kill",      "kill in step",  "host power loss",
+        "both power loss",    "link cut",        "link silent",       "link stall",    "host pause",
+        "slow disk",          "disk full",       "belt pause"};
     return names[static_cast<std::size_t>(fault)];
 }
 
@@ -53,6 +53,10 @@ void Scenario::text_of(std::uint32_t number, std::string& out) const {
 
 namespace {
 
+/// No such printer is known; but in a smaller FIFO, or with slow answers, no flush of another client would show
+/// (Faults::gap_would_show()).
+constexpr std::uint32_t large_depth = 1024;
+
 void draw_faults(Scenario& scenario, Random random) {
     scenario.faults = static_cast<std::uint32_t>(random.spread(1, 24));
     for (std::uint32_t& weight : scenario.weights) {
@@ -60,6 +64,9 @@ void draw_faults(Scenario& scenario, Random random) {
     }
     if (std::all_of(scenario.weights.begin(), scenario.weights.end(), [](std::uint32_t w) { return w == 0; })) {
         scenario.weights[random.below(static_cast<std::uint64_t>(Fault::printer_restart))] = 1;
+    }
+    if (scenario.printer.depth == large_depth) {
+        scenario.weights[static_cast<std::size_t>(Fault::foreign_flush)] = 32;
     }
     // Around the time that some records take, so that faults meet a printing line as well as one another.
     const Duration typical =
@@ -72,8 +79,10 @@ void draw_printer(Scenario& scenario, Random random) {
     simulator::PrinterSettings& printer = scenario.printer;
     printer.depth = depths[random.below(3)];
     if (printer.depth == 256 && random.chance(0.3)) {
-        printer.depth = 1024; // no such printer is known; but in a small FIFO no flush of another client would show
-        scenario.records = static_cast<std::uint32_t>(random.spread(1024, 8192));
+        printer.depth = large_depth;
+        const Duration latency = random.spread(Duration{50us}, Duration{2ms});
+        scenario.latency = {latency, 2 * latency};
+        scenario.records = static_cast<std::uint32_t>(random.between(2048, 8192));
     }
     const Duration shortest = (scenario.period - scenario.period_jitter) / (scenario.bursts ? 2 : 1);
     printer.print_duration = std::min<Duration>(random.spread(Duration{200us}, Duration{200ms}), shortest * 6 / 10);

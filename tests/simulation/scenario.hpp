@@ -14,12 +14,12 @@ namespace linefeed::simulation {
 
 /// What can go wrong.
 enum class Fault : std::uint8_t {
-    operator_stop,    ///< print-ready is switched off at the panel
-    stop_and_go,      ///< off, and on again at once
-    stop_under_refill, ///< the same, exactly when records are about to arrive
-    panel_start,      ///< somebody presses GO while linefeed does not print
+    operator_stop,       ///< print-ready is switched off at the panel
+    stop_and_go,         ///< off, and on again at once
+    stop_under_refill,   ///< the same, exactly when records are about to arrive
+    panel_start,         ///< somebody presses GO while linefeed does not print
     start_between_looks, ///< while linefeed finds out what an interruption has left in the FIFO
-    stop_by_linefeed, ///< Ctrl-C
+    stop_by_linefeed,    ///< Ctrl-C
     printer_error,
     cover_opened,
     nozzle_closed,
@@ -40,7 +40,7 @@ enum class Fault : std::uint8_t {
     link_silent, ///< no byte comes through any more
     link_stall,  ///< bytes come late, but come
     host_pause,  ///< the process gets no time
-    slow_disk, ///< sometimes the program is killed over it
+    slow_disk,   ///< sometimes the program is killed over it
     disk_full,
     belt_pause,
 };

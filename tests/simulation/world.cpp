@@ -128,8 +128,7 @@ private:
 
     [[nodiscard]] bool underrun_is_explained() const {
         const auto phase = host_.phase();
-        const bool feeds =
-            (phase == feeder::Phase::starting || phase == feeder::Phase::printing) && !host_.all_sent();
+        const bool feeds = (phase == feeder::Phase::starting || phase == feeder::Phase::printing) && !host_.all_sent();
         return !feeds || !context_.scenario.supply_is_sufficient() || faults_.excuses_underrun();
     }
 
