@@ -111,14 +111,18 @@ void Line::about_to_take(const protocol::Frame& frame) {
 std::unique_ptr<PrinterModel> Line::sister_printer() {
     constexpr Duration earlier = std::chrono::seconds{10};
     const std::uint32_t depth = context_.scenario.printer.depth;
+    // It is a little ahead of ours, or behind.
     const auto behind = static_cast<std::uint32_t>(random_.below(depth));
+    const auto ahead = static_cast<std::uint32_t>(random_.chance(0.6) ? random_.below(depth) + behind : 0);
+    const bool has_printed = random_.chance(0.5); // otherwise it is fresh from power-up
     simulator::PrinterSettings settings = context_.scenario.printer;
     settings.serial_number = "204812";
-    settings.total_prints = random_.chance(0.2) ? settings.total_prints + 1234567 : printer_->total_prints() - behind;
+    settings.total_prints = random_.chance(0.2) ? settings.total_prints + 1234567
+                                                : printer_->total_prints() + ahead - behind - (has_printed ? 1 : 0);
     auto sister = std::make_unique<PrinterModel>(settings, context_.now - earlier);
-    if (random_.chance(0.5)) { // not fresh from power-up: it has just printed a record of about this number
+    if (has_printed) { // a record of about this number
         const std::uint64_t number =
-            std::max<std::uint64_t>(judge_.last().value(), context_.scenario.first() + behind) - behind;
+            std::max<std::uint64_t>(judge_.last().value(), context_.scenario.first() + behind) + ahead - behind;
         const std::string record = "^0=MR" + std::to_string(number) + "\tX\r^0!GO\r";
         protocol::FrameDecoder decoder;
         std::string_view bytes = record;
