@@ -188,8 +188,13 @@ void Feeder::try_loading(Instant now, Actions& out) {
 void Feeder::verify(Instant now, Actions& out) {
     const std::uint64_t sent = refill_.level().value();
     const bool as_expected = mail_.entries + std::uint64_t{1} == sent;
-    if (!as_expected && mail_reads_ < 2) {
+    const bool stop_point_stands = stop_point_ != StopPoint::kept_idle || mail_.stop_at == refill_.range().last();
+    if (!(as_expected && stop_point_stands) && mail_reads_ < 2) {
         ask(Parameter::SM, now, out);
+        return;
+    }
+    if (!stop_point_stands) {
+        begin_stop(OutcomeCode::stopped_at_printer, now, out); // with the stop point a part of the fill is gone
         return;
     }
     if (mail_.entries == 0 && sent > 1) {
@@ -198,6 +203,9 @@ void Feeder::verify(Instant now, Actions& out) {
     }
     if (!as_expected) {
         out.push_back(Notice{NoticeCode::entries_differ, {}});
+        if (!stop_would_show()) {
+            counter_proof_.doubt(); // a stop may have thrown a part of the fill away
+        }
     }
     enter(Phase::starting, now, Duration::max());
     go_due_ = now + settings_.fill_lead;

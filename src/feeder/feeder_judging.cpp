@@ -33,17 +33,12 @@ Evidence Feeder::evidence() const {
     }
     // Another client may have set a stop point before the end: then the number contradicts the message.
     const bool at_the_end = mail_.last_printed == refill_.range().last() || mail_.last_printed == RecordNumber{};
-    Evidence evidence{.mail = mail_,
-                      .printer = facts_,
-                      .end_message = is_error(status_.error, protocol::error_code::last_record_printed) && at_the_end &&
-                                     stop_would_show() && refill_.all_sent() && !restarted_,
-                      .uninterrupted = !memory_lost_,
-                      .restarted = restarted_};
-    if (marker_printed()) { // a blank product behind the last record
-        evidence.mail.last_printed = refill_.range().last();
-        evidence.mail.last_print_finished = true;
-    }
-    return evidence;
+    return {.mail = mail_,
+            .printer = facts_,
+            .end_message = is_error(status_.error, protocol::error_code::last_record_printed) && at_the_end &&
+                           stop_would_show() && refill_.all_sent() && !restarted_,
+            .uninterrupted = !memory_lost_,
+            .restarted = restarted_};
 }
 
 /// The printer stands and has been asked. Final when nothing of the run can be in its FIFO.
@@ -100,6 +95,9 @@ void Feeder::clearing_status(Instant now, Actions& out) {
 
 void Feeder::judge_finally(Instant now, Actions& out) {
     Evidence seen = evidence();
+    if (!seen.printer.total_prints) { // not answered this time: it has not gone back since
+        seen.printer.total_prints = first_look_.printer.total_prints;
+    }
     const bool number_forgotten =
         seen.mail.last_printed == RecordNumber{} && seen.printer.total_prints == first_look_.printer.total_prints;
     if (number_forgotten) {

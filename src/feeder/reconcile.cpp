@@ -83,12 +83,11 @@ bool is_marker_number(const OpenRun& run, RecordNumber number) {
     return run.last && run.issued_through == *run.last && *run.last < RecordNumber::max() && number == run.last->next();
 }
 
-/// The counter has seen every record of the run and the end marker, which may be unfinished, and nothing else.
-bool counter_saw_marker(const OpenRun& run, const Evidence& evidence) {
-    const auto prints = prints_since(run, evidence);
-    const std::uint64_t with_marker = (*run.last - run.first).value() + 2;
-    return prints && (*prints == with_marker ||
-                      (*prints + std::uint64_t{1} == with_marker && !evidence.mail.last_print_finished));
+/// The printer's number is believed. That of the end marker, finished or not, says that every record is printed.
+Verdict printed_as_reported(const OpenRun& run, const Evidence& evidence, Basis basis) {
+    const RecordNumber reported = evidence.mail.last_printed;
+    return is_marker_number(run, reported) ? printed_through(run, run.issued_through, true, basis)
+                                           : printed_through(run, reported, evidence.mail.last_print_finished, basis);
 }
 
 /// Nothing of the run is confirmed, and the printer reports the number that it had before the run. Either no record was
@@ -104,13 +103,8 @@ Verdict by_left_over_number(const OpenRun& run, const Evidence& evidence) {
     if (prints && *prints == 0) {
         return printed_through(run, run.printed_through, true, Basis::mail_status_and_counter);
     }
-    if (marker && counter_saw_marker(run, evidence)) {
-        return printed_through(run, run.issued_through, true, Basis::mail_status_and_counter);
-    }
-    if (prints && within && compare_counter(run, evidence, reported) == CounterSays::agrees) {
-        return printed_through(run, reported, evidence.mail.last_print_finished, Basis::mail_status_and_counter);
-    }
-    return all_in_doubt(run);
+    const bool agrees = (within || marker) && compare_counter(run, evidence, reported) == CounterSays::agrees;
+    return agrees ? printed_as_reported(run, evidence, Basis::mail_status_and_counter) : all_in_doubt(run);
 }
 
 /// The printer reports no number: it has lost its memory, or nothing was printed since it had.
@@ -128,36 +122,24 @@ Verdict without_number(const OpenRun& run, const Evidence& evidence) {
     return by_counter(run, evidence);
 }
 
-/// The number lies within what was issued and not yet confirmed. Another job that was printed meanwhile and continues
-/// both the numbers and the count of this run exactly cannot be told from it.
+/// The number lies within what was issued and not yet confirmed, or is that of the end marker. Another job that was
+/// printed meanwhile and continues both the numbers and the count of this run exactly cannot be told from it.
 Verdict by_number(const OpenRun& run, const Evidence& evidence) {
-    const RecordNumber reported = evidence.mail.last_printed;
-    const CounterSays counter = compare_counter(run, evidence, reported);
+    const CounterSays counter = compare_counter(run, evidence, evidence.mail.last_printed);
     if (evidence.restarted && counter != CounterSays::agrees) {
         return all_in_doubt(run);
     }
     switch (counter) {
     case CounterSays::agrees:
-        return printed_through(run, reported, evidence.mail.last_print_finished, Basis::mail_status_and_counter);
+        return printed_as_reported(run, evidence, Basis::mail_status_and_counter);
     case CounterSays::nothing:
-        return printed_through(run, reported, evidence.mail.last_print_finished, Basis::mail_status);
+        return printed_as_reported(run, evidence, Basis::mail_status);
     case CounterSays::too_few: // A stop has emptied the FIFO, and the printer went on behind what it had thrown away.
         return all_in_doubt(run);
     case CounterSays::more_was_printed: // Is this number still ours?
-        return evidence.uninterrupted
-                   ? printed_through(run, reported, evidence.mail.last_print_finished, Basis::mail_status)
-                   : all_in_doubt(run);
+        return evidence.uninterrupted ? printed_as_reported(run, evidence, Basis::mail_status) : all_in_doubt(run);
     }
     assertion_failed("CounterSays", __FILE__, __LINE__);
-}
-
-/// The blank end marker behind the last record was printed, so all records were; a counter that moves has seen it too.
-bool shows_end_marker(const OpenRun& run, const Evidence& evidence) {
-    if (!is_marker_number(run, evidence.mail.last_printed)) {
-        return false;
-    }
-    const auto prints = prints_since(run, evidence);
-    return !prints || *prints == 0 || counter_saw_marker(run, evidence);
 }
 
 } // namespace
@@ -211,11 +193,9 @@ Verdict reconcile(const OpenRun& run, const Evidence& evidence) {
     if (run.printed_through < run.first && reported == run.last_printed_before) {
         return by_left_over_number(run, evidence);
     }
-    if (shows_end_marker(run, evidence)) {
-        return printed_through(run, run.issued_through, true, Basis::mail_status);
-    }
     const RecordNumber least = std::max(run.first, run.printed_through);
-    return least <= reported && reported <= run.issued_through ? by_number(run, evidence) : all_in_doubt(run);
+    const bool within = least <= reported && reported <= run.issued_through;
+    return within || is_marker_number(run, reported) ? by_number(run, evidence) : all_in_doubt(run);
 }
 
 } // namespace linefeed::feeder

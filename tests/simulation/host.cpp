@@ -105,7 +105,7 @@ void Host::start(const cli::OperatorWord& word) {
     next_run();
 }
 
-/// The loop of PrintCommand::print().
+/// The loop of PrintCommand::print_runs(), and what print() tells behind it.
 void Host::next_run() {
     while (!interrupted_) {
         auto open = daemon::find_open_issue(*spool_, job_);
@@ -144,7 +144,9 @@ void Host::next_run() {
         begin_run(*open);
         return;
     }
-    end_process(ending_.code);
+    const auto state = spool_->ledger_state(job_);
+    const bool between_two_runs = interrupted_ && state && !state->next_printable(wanted_).empty();
+    end_process(between_two_runs ? OutcomeCode::stop_requested : ending_.code);
 }
 
 void Host::end_process(OutcomeCode code) {

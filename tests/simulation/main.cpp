@@ -6,7 +6,6 @@
 //   linefeed_simulation --from A --count N    N seeds
 //   linefeed_simulation --hours H             seeds until the line has printed for H hours
 //   linefeed_simulation --regressions FILE    the seeds of a list (first word of a line; # begins a comment)
-//   linefeed_simulation … --skip FILE         without the seeds of this list: findings known and not yet mended
 //   linefeed_simulation … --twice             each seed twice; the traces must agree
 //   linefeed_simulation --profile line        the speed at 1 000 prints/s without faults
 //
@@ -17,14 +16,12 @@
 
 #include <CLI/CLI.hpp>
 
-#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <fstream>
 #include <malloc.h>
 #include <string>
-#include <vector>
 
 namespace linefeed::simulation {
 namespace {
@@ -35,7 +32,6 @@ struct Options {
     std::uint64_t count = 0;
     double hours = 0;
     std::string regressions;
-    std::string skip;
     std::string profile = "mixed";
     bool trace = false;
     bool twice = false;
@@ -59,8 +55,6 @@ public:
 
     int run() {
         const auto begin = std::chrono::steady_clock::now();
-        const std::vector<std::uint64_t> skipped =
-            options_.skip.empty() ? std::vector<std::uint64_t>{} : read_list(options_.skip);
         if (options_.seed) {
             run_one(*options_.seed);
         } else if (!options_.regressions.empty()) {
@@ -71,10 +65,7 @@ public:
             const std::uint64_t count = options_.count == 0 && options_.hours == 0 ? 100 : options_.count;
             for (std::uint64_t i = 0;
                  (i < count || counts_.printing < wanted) && !(options_.stop_at_first && violations_ > 0); ++i) {
-                const std::uint64_t seed = options_.from + i;
-                if (std::find(skipped.begin(), skipped.end(), seed) == skipped.end()) {
-                    run_one(seed);
-                }
+                run_one(options_.from + i);
             }
         }
         report(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
@@ -104,22 +95,14 @@ private:
         std::fflush(stdout);
     }
 
-    static std::vector<std::uint64_t> read_list(const std::string& file) {
-        std::vector<std::uint64_t> seeds;
-        std::ifstream list{file};
+    void run_list() {
+        std::ifstream list{options_.regressions};
         std::string line;
         while (std::getline(list, line)) {
             const std::string word = line.substr(0, line.find_first_of(" \t#"));
             if (!word.empty()) {
-                seeds.push_back(std::stoull(word));
+                run_one(std::stoull(word));
             }
-        }
-        return seeds;
-    }
-
-    void run_list() {
-        for (const std::uint64_t seed : read_list(options_.regressions)) {
-            run_one(seed);
         }
         if (seeds_ == 0) {
             ++violations_;
@@ -167,7 +150,6 @@ int main(int argc, char** argv) {
     app.add_option("--count", options.count, "How many seeds");
     app.add_option("--hours", options.hours, "Go on until the line has printed for so many hours");
     app.add_option("--regressions", options.regressions, "Run the seeds of this file")->check(CLI::ExistingFile);
-    app.add_option("--skip", options.skip, "Leave the seeds of this file out")->check(CLI::ExistingFile);
     app.add_option("--profile", options.profile, "mixed or line")->check(CLI::IsMember({"mixed", "line"}));
     app.add_flag("--trace", options.trace, "Print everything that happens");
     app.add_flag("--twice", options.twice, "Run each seed twice and compare");

@@ -138,6 +138,44 @@ TEST(FeederFilling, shouldSayWhenThePrinterHoldsAnotherNumberOfEntries) {
     story.expect("!GO; ?RS; ?SM");
 }
 
+TEST(FeederFilling, shouldNotStartWhenTheStopPointHasVanishedUnderTheFill) {
+    Story story = reach(Phase::verifying); // somebody has started the printer and stopped it again
+    story.sm(1, 77, 0);
+    story.expect("?SM");
+    story.sm(1, 77, 0);
+    story.expect("!ST; ?RS");
+    story.judge(1, 77, true, 1000);
+    story.expect("settle this run so far: printed none by mail status; "
+                 "settle this run: printed none, in doubt none, unused 101-104 by mail status; "
+                 "end: stopped_at_printer (ready for print start, error 0)");
+
+    story = reach(Phase::verifying);
+    story.sm(3, 77, 0); // one inquiry old
+    story.sm(3, 77, 110);
+    EXPECT_EQ(story.phase(), Phase::starting);
+}
+
+/// Without a stop point only the entries tell that a stop may have thrown a part of the fill away.
+TEST(FeederFilling, shouldAskTheCounterWhenEntriesAreMissingAndNoStopPointStands) {
+    Story story;
+    story.arm_to_grant();
+    story.granted();
+    story.sm(0, 77, 0);
+    story.sm(0, 77, 0);
+    story.sm(0, 77, 0);
+    story.supplied(Story::last);
+    story.sm(2, 77, 0);
+    story.sm(2, 77, 0);
+    EXPECT_NE(story.take().find("another number of FIFO entries"), std::string::npos);
+    story.wait(milliseconds{4});
+    story.rs(State::printing);
+    story.sm(2, 77, 110); // kept from now on
+    story.take();
+    story.sm(1, 103, 110);
+    EXPECT_NE(story.take().find("?CC; ?SM; ?SM"), std::string::npos);
+    EXPECT_EQ(story.feeder.refill().printed_through(), RecordNumber{103});
+}
+
 TEST(FeederFilling, shouldStopWhenThePrinterTakesNoRecords) {
     Story story = reach(Phase::verifying);
     story.sm(0, 77, 110);

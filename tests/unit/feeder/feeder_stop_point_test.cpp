@@ -129,15 +129,24 @@ TEST(FeederStopPoint, shouldFinishWithAPrintedEndMarker) {
     story.sm(0, 111, 0);
     story.expect("!ST; ?RS");
     story.judge(0, 111, true, 1011);
-    story.expect("settle this run: printed 101-110, in doubt none, unused none by mail status; "
+    story.expect("settle this run: printed 101-110, in doubt none, unused none by mail status and total print counter; "
                  "end: finished (ready for print start, error 0)");
+}
+
+TEST(FeederStopPoint, shouldDoubtTheRecordsWhenTheCounterHasNotSeenTheMarkerToo) {
+    Story story = printing_with_marker();
+    story.sm(0, 111, 0);
+    story.expect("!ST; ?RS");
+    story.judge(0, 111, true, 1010); // a record before the marker was thrown away
+    EXPECT_NE(story.take().find("in doubt"), std::string::npos);
 }
 
 TEST(FeederStopPoint, shouldFindTheEndMarkerPrintedOnlyWhenJudging) {
     Story story = printing_with_marker();
     story.rs(State::ready_to_print, raw_error(5043));
     story.judge(0, 111, true, 1011, raw_error(5043));
-    story.expect("settle this run: printed 101-110, in doubt none, unused none by mail status; !EQ; ?RS");
+    story.expect("settle this run: printed 101-110, in doubt none, unused none by mail status and total print counter; "
+                 "!EQ; ?RS");
 }
 
 TEST(FeederStopPoint, shouldTakeTheEndMarkerForProofThoughNoNumberOfTheRunWasSeen) {
@@ -157,7 +166,8 @@ TEST(FeederStopPoint, shouldTakeTheEndMarkerForProofThoughNoNumberOfTheRunWasSee
     EXPECT_NE(story.take().find("end marker 103"), std::string::npos);
     story.rs(State::ready_to_print, raw_error(5043));
     story.judge(0, 103, true, 1003, raw_error(5043));
-    story.expect("settle this run: printed 101-102, in doubt none, unused none by mail status; !EQ; ?RS");
+    story.expect("settle this run: printed 101-102, in doubt none, unused none by mail status and total print counter; "
+                 "!EQ; ?RS");
 }
 
 TEST(FeederStopPoint, shouldCountOnlyOnceAtATime) {

@@ -236,6 +236,20 @@ TEST(FeederStopping, shouldFindWhatSomebodyPrintsBeforeTheFlush) {
         ended(OutcomeCode::stop_requested, "ready for print start, error " + std::to_string(raw_error(5043))));
 }
 
+/// The counter is not answered behind the flush: what it said before still contradicts the number.
+TEST(FeederStopping, shouldRememberTheCounterOfTheFirstLook) {
+    Story story = reach(Phase::printing);
+    story.stop();
+    story.judge_unsettled(1, 103, true, 1002);
+    EXPECT_EQ(story.phase(), Phase::recording);
+    story.take();
+    story.settled();
+    story.rs(State::ready_to_print);
+    story.say_where(0, 103);
+    story.no_answer(protocol::Parameter::CC);
+    EXPECT_NE(story.take().find("in doubt 101-104"), std::string::npos);
+}
+
 TEST(FeederStopping, shouldLeaveRecordsOpenThatCannotBeFlushed) {
     Story story = reach(Phase::clearing);
     story.rs(State::ready_to_print);

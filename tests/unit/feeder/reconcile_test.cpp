@@ -131,15 +131,21 @@ TEST(Reconcile, shouldDoubtEverythingWhenSomethingElseWasPrintedMeanwhile) {
 
 TEST(Reconcile, shouldTakeAPrintedEndMarkerForTheProofOfTheLastRecord) {
     const std::string all_printed = "printed 111-120, in doubt none, unused none by mail status";
+    const std::string by_counter_too = all_printed + " and total print counter";
     OpenRun run = run_with(110);
     run.last = no(120);
-    EXPECT_EQ(verdict(run, says(121, 1021)), all_printed);
-    EXPECT_EQ(verdict(run, says(121, 1021, false)), all_printed) << "it is the marker that is unfinished";
-    EXPECT_EQ(verdict(run, says(121, 1020, false)), all_printed);
+    EXPECT_EQ(verdict(run, says(121, 1021)), by_counter_too);
+    EXPECT_EQ(verdict(run, says(121, 1021, false)), by_counter_too) << "it is the marker that is unfinished";
+    EXPECT_EQ(verdict(run, says(121, 1020, false)), by_counter_too);
     EXPECT_EQ(verdict(run, says(121, std::nullopt)), all_printed);
     EXPECT_EQ(verdict(run, says(121, 1000)), all_printed) << "a counter that does not move";
     EXPECT_EQ(verdict(run, says(121, 1020)), doubt_from_111) << "a record was skipped";
+    EXPECT_EQ(verdict(run, uninterrupted(says(121, 1020))), doubt_from_111);
     EXPECT_EQ(verdict(run, says(121, 1022)), doubt_from_111) << "something else was printed";
+    EXPECT_EQ(verdict(run, uninterrupted(says(121, 1022))), all_printed) << "under our eyes the number stays ours";
+    Evidence restarted = uninterrupted(says(121, std::nullopt));
+    restarted.restarted = true;
+    EXPECT_EQ(verdict(run, restarted), doubt_from_111) << "nobody counts what was thrown away";
     EXPECT_EQ(verdict(run, says(122, 1022)), doubt_from_111) << "there is one marker";
     run.last = no(130);
     EXPECT_EQ(verdict(run, says(121, 1021)), doubt_from_111) << "no marker had been sent by then";
