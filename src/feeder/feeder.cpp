@@ -8,6 +8,10 @@ namespace linefeed::feeder {
 using protocol::MachineState;
 using protocol::Parameter;
 
+namespace {
+constexpr int max_answers_lost = 3;
+} // namespace
+
 Feeder::Feeder(const FeederSettings& settings, const FeederPlan& plan)
     : settings_(settings)
     , plan_(plan)
@@ -16,6 +20,7 @@ Feeder::Feeder(const FeederSettings& settings, const FeederPlan& plan)
 void Feeder::on_machine_status(const protocol::MachineStatus& status, Instant now, Actions& out) {
     status_ = status;
     status_outstanding_ = false;
+    answers_lost_ = 0;
     switch (phase_) {
     case Phase::identifying:
         if (status_.machine == MachineState::standby) {
@@ -92,6 +97,7 @@ void Feeder::on_mail_status(const protocol::MailStatus& status, Instant now, Act
     mail_answered(now);
     mail_ = status;
     ++mail_reads_;
+    answers_lost_ = 0;
     switch (phase_) {
     case Phase::locating:
     case Phase::judging:
@@ -184,7 +190,8 @@ void Feeder::on_job_name(const protocol::JobName& job, Instant now, Actions& out
     }
 }
 
-void Feeder::on_no_answer(Parameter what, Instant now, Actions& out) {
+/// A serial line may damage an answer, or the inquiry.
+void Feeder::on_lost_answer(Parameter what, Instant now, Actions& out) {
     if (phase_ == Phase::ended) {
         return;
     }
@@ -192,16 +199,37 @@ void Feeder::on_no_answer(Parameter what, Instant now, Actions& out) {
         if (--identity_answers_missing_ == 0) {
             identified(now, out);
         }
-    } else if (what == Parameter::CC) {
-        on_counters({}, now, out);
-    } else if (phase_ == Phase::finishing) {
-        end(OutcomeCode::finished, out); // printed and settled all; only the message stays on the panel
-    } else {
-        if (any_sent_) {
-            out.push_back(Command{protocol::Action::stop_print}); // it may still listen
-        }
-        end(OutcomeCode::no_answer, out);
+        return;
     }
+    if (what == Parameter::CC) {
+        on_counters({}, now, out);
+        return;
+    }
+    if (what == Parameter::SM) {
+        forget_oldest_mail();
+    } else {
+        status_outstanding_ = false;
+    }
+    const bool again = what == Parameter::SM ? waits_for_mail() && mail_outstanding_ == 0 : waits_for_status();
+    if (again && ++answers_lost_ > max_answers_lost) {
+        on_silence(out);
+    } else if (again) {
+        ask(what, now, out);
+    }
+}
+
+void Feeder::on_silence(Actions& out) {
+    if (phase_ == Phase::ended) {
+        return;
+    }
+    if (phase_ == Phase::finishing) {
+        end(OutcomeCode::finished, out); // printed and settled all; only the message stays on the panel
+        return;
+    }
+    if (any_sent_) {
+        out.push_back(Command{protocol::Action::stop_print}); // it may still listen
+    }
+    end(OutcomeCode::no_answer, out);
 }
 
 void Feeder::on_link_lost(Actions& out) {

@@ -84,8 +84,11 @@ public:
     void on_counters(const protocol::Counters& counters, Instant now, Actions& out);
     void on_version(const protocol::VersionInfo& version, Instant now, Actions& out);
     void on_job_name(const protocol::JobName& job, Instant now, Actions& out);
-    /// An inquiry got no answer in time. Only `?RS` and `?SM` are needed; the rest is evidence that is missing then.
-    void on_no_answer(protocol::Parameter what, Instant now, Actions& out);
+    /// An inquiry got no answer, though the printer answers others. `?RS` and `?SM` are asked again where their answer is
+    /// waited for; the rest is evidence that is missing then.
+    void on_lost_answer(protocol::Parameter what, Instant now, Actions& out);
+    /// The printer answers nothing at all.
+    void on_silence(Actions& out);
     void on_link_lost(Actions& out);
 
     // Facts from the ledger and the pages.
@@ -123,6 +126,9 @@ private:
     void enter(Phase phase, Instant now, Duration timeout);
     void ask(protocol::Parameter what, Instant now, Actions& out);
     void mail_answered(Instant now);
+    void forget_oldest_mail();
+    [[nodiscard]] bool waits_for_mail() const;
+    [[nodiscard]] bool waits_for_status() const;
     void ask_later(protocol::Parameter what, Instant now);
     void locate_step(Instant now, Actions& out);
     void on_deadline(Instant now, Actions& out);
@@ -207,6 +213,7 @@ private:
     std::size_t mail_oldest_ = 0;
     int mail_outstanding_ = 0;
     int counters_outstanding_ = 0;
+    int answers_lost_ = 0; ///< asked for again, one after the other
     bool status_outstanding_ = false;
     std::optional<Instant> deadline_; ///< of the phase
     std::optional<Instant> retry_at_;

@@ -203,9 +203,7 @@ void Feeder::verify(Instant now, Actions& out) {
     }
     if (!as_expected) {
         out.push_back(Notice{NoticeCode::entries_differ, {}});
-        if (!stop_would_show()) {
-            counter_proof_.doubt(); // a stop may have thrown a part of the fill away
-        }
+        counter_proof_.doubt(); // a stop, or a damaged line, may have cost a part of the fill
     }
     enter(Phase::starting, now, Duration::max());
     go_due_ = now + settings_.fill_lead;

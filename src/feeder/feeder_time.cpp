@@ -39,8 +39,72 @@ void Feeder::mail_answered(Instant now) {
         return; // nobody asked
     }
     pacing_.answered_after(now - mail_asked_at_[mail_oldest_]);
-    mail_oldest_ = (mail_oldest_ + 1) % mail_asked_at_.size();
-    --mail_outstanding_;
+    forget_oldest_mail();
+}
+
+void Feeder::forget_oldest_mail() {
+    if (mail_outstanding_ > 0) {
+        mail_oldest_ = (mail_oldest_ + 1) % mail_asked_at_.size();
+        --mail_outstanding_;
+    }
+}
+
+/// Nothing goes on before `=SM` comes. While it prints, it is asked for again anyway.
+bool Feeder::waits_for_mail() const {
+    switch (phase_) {
+    case Phase::locating:
+    case Phase::taking_over:
+    case Phase::flushing:
+    case Phase::setting_stop:
+    case Phase::verifying:
+    case Phase::judging:
+    case Phase::clearing:
+        return true;
+    case Phase::idle:
+    case Phase::identifying:
+    case Phase::halting:
+    case Phase::opening_nozzle:
+    case Phase::acknowledging:
+    case Phase::granting:
+    case Phase::loading:
+    case Phase::starting:
+    case Phase::printing:
+    case Phase::stopping:
+    case Phase::recording:
+    case Phase::finishing:
+    case Phase::ended:
+        return false;
+    }
+    assertion_failed("Phase", __FILE__, __LINE__);
+}
+
+/// Nothing goes on before `=RS` comes, or it is the only sign of a stop.
+bool Feeder::waits_for_status() const {
+    switch (phase_) {
+    case Phase::identifying:
+    case Phase::halting:
+    case Phase::opening_nozzle:
+    case Phase::acknowledging:
+    case Phase::starting:
+    case Phase::printing:
+    case Phase::stopping:
+    case Phase::judging:
+    case Phase::clearing:
+    case Phase::finishing:
+        return true;
+    case Phase::idle:
+    case Phase::locating:
+    case Phase::taking_over:
+    case Phase::granting:
+    case Phase::flushing:
+    case Phase::setting_stop:
+    case Phase::loading:
+    case Phase::verifying:
+    case Phase::recording:
+    case Phase::ended:
+        return false;
+    }
+    assertion_failed("Phase", __FILE__, __LINE__);
 }
 
 void Feeder::ask_later(Parameter what, Instant now) {
@@ -74,7 +138,7 @@ void Feeder::on_deadline(Instant now, Actions& out) {
         return;
     case Phase::finishing:
         end(OutcomeCode::finished, out);
-        return; // as in on_no_answer()
+        return; // as in on_silence()
     case Phase::recording:
         end(OutcomeCode::storage_failed, out); // the ledger does not answer: nothing is flushed
         return;

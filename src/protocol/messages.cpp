@@ -38,7 +38,7 @@ Message read_mail_status(ParameterReader& in, EscapeMode) {
     status.entries = in.number("a number of entries");
     status.last_printed = in.record_number();
     status.stop_at = in.record_number();
-    status.last_print_finished = in.optional_number("a number").value_or(1) > 0;
+    status.last_print_finished = in.number("a number") > 0;
     status.print_go_count = in.optional_number("a number of PrintGos");
     return status;
 }

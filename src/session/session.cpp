@@ -16,6 +16,7 @@ Session::Session(const SessionSettings& settings, const feeder::FeederPlan& plan
 void Session::on_connected(Instant now, Effects& out) {
     LINEFEED_ASSERT(!connected_ && !closed_);
     connected_ = true;
+    heard_at_ = now;
     decoder_.reset();
     Actions actions;
     feeder_.start(now, actions);
@@ -61,6 +62,7 @@ bool may_be_answer(const protocol::Frame& frame) {
 
 void Session::take_frame(const protocol::Frame& frame, Instant now, Actions& actions) {
     ++statistics_.frames_received;
+    heard_at_ = now;
     if (!may_be_answer(frame)) {
         ++statistics_.frames_unexpected;
         return;
@@ -83,6 +85,7 @@ bool Session::take_answer(const protocol::Message& message, Instant now, Actions
         return asked;
     }
     if (const auto* machine = std::get_if<protocol::MachineStatus>(&message)) {
+        forget_mail_before_status(now, actions);
         const bool asked = answered(Parameter::RS);
         if (asked) {
             feeder_.on_machine_status(*machine, now, actions);
@@ -118,6 +121,30 @@ bool Session::answered(Parameter what) {
         }
     }
     return false;
+}
+
+/// Answers come in the order of the inquiries, so what was asked before a `?RS` that is answered now will not be
+/// answered any more.
+void Session::forget_mail_before_status(Instant now, Actions& actions) {
+    const auto* const status = std::ranges::find(inquiries_, Parameter::RS, &Inquiry::what);
+    if (status == inquiries_.end()) {
+        return;
+    }
+    for (auto before = std::ranges::count(inquiries_.begin(), status, Parameter::SM, &Inquiry::what); before > 0;
+         --before) {
+        static_cast<void>(answered(Parameter::SM));
+        feeder_.on_lost_answer(Parameter::SM, now, actions);
+    }
+}
+
+/// Only `?RS` and `?SM` must be answered.
+void Session::time_out(Parameter what, Instant now, Actions& actions) {
+    const bool needed = what == Parameter::RS || what == Parameter::SM;
+    if (needed && now - heard_at_ >= settings_.reply_timeout) {
+        feeder_.on_silence(actions);
+    } else {
+        feeder_.on_lost_answer(what, now, actions);
+    }
 }
 
 void Session::on_written(Instant, Effects& out) {
@@ -212,7 +239,7 @@ void Session::on_time(Instant now, Effects& out) {
         const Parameter what = inquiries_[i].what;
         inquiries_.erase(i);
         actions.clear();
-        feeder_.on_no_answer(what, now, actions);
+        time_out(what, now, actions);
         carry_out(actions, now, out);
         i = 0;
     }

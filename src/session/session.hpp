@@ -44,7 +44,7 @@ struct SessionSettings {
     protocol::EscapeMode escapes = protocol::EscapeMode::backslash;
     /// The charsets of a record's fields; the end marker has as many, each a blank.
     std::vector<protocol::Charset> charsets{protocol::Charset::latin1};
-    /// An inquiry unanswered for this long is a printer that does not answer.
+    /// An inquiry unanswered for this long is lost; a printer from which nothing came for as long is silent.
     Duration reply_timeout = std::chrono::seconds{2};
     /// How long the last commands (`!ST`, `!EQ`) may take to be written before the link is closed all the same.
     Duration farewell_timeout = std::chrono::seconds{1};
@@ -99,6 +99,8 @@ private:
     [[nodiscard]] bool take_answer(const protocol::Message& message, Instant now, feeder::Actions& actions);
     /// Removes the oldest inquiry for `what`; false if there was none.
     [[nodiscard]] bool answered(protocol::Parameter what);
+    void forget_mail_before_status(Instant now, feeder::Actions& actions);
+    void time_out(protocol::Parameter what, Instant now, feeder::Actions& actions);
     void carry_out(const feeder::Actions& actions, Instant now, Effects& out);
     void carry_out(const feeder::Action& action, Instant now, Effects& out);
     void flush(Effects& out);
@@ -112,6 +114,7 @@ private:
     Outbox outbox_;
     PageWindow pages_;
     BoundedList<Inquiry, max_inquiries> inquiries_;
+    Instant heard_at_{}; ///< of the last frame
     SessionStatistics statistics_;
     bool connected_ = false;
     std::optional<feeder::End> end_; ///< the feeder has ended; its last commands may still be on the way

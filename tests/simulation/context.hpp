@@ -17,6 +17,7 @@ struct Counts {
     std::uint64_t runs = 0;
     std::uint64_t starts = 0;   ///< of the program
     std::uint64_t in_doubt = 0; ///< records named in doubt
+    std::uint64_t bytes_damaged = 0;
     Duration printing{0};       ///< time in state printing
     Duration simulated{0};
     std::array<std::uint64_t, fault_kinds> faults{};
@@ -28,6 +29,7 @@ struct Counts {
         runs += other.runs;
         starts += other.starts;
         in_doubt += other.in_doubt;
+        bytes_damaged += other.bytes_damaged;
         printing += other.printing;
         simulated += other.simulated;
         for (std::size_t i = 0; i < fault_kinds; ++i) {

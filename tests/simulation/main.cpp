@@ -118,9 +118,10 @@ private:
             static_cast<unsigned long long>(seeds_), simulated_s / 3600, printing_s / 3600,
             static_cast<unsigned long long>(counts_.prints), static_cast<unsigned long long>(counts_.other_prints),
             static_cast<unsigned long long>(counts_.starts), static_cast<unsigned long long>(counts_.runs));
-        std::printf("%llu records named in doubt, %llu underruns with a reason\nfaults:",
+        std::printf("%llu records named in doubt, %llu underruns with a reason\nfaults: byte lost or damaged %llu,",
                     static_cast<unsigned long long>(counts_.in_doubt),
-                    static_cast<unsigned long long>(counts_.underruns));
+                    static_cast<unsigned long long>(counts_.underruns),
+                    static_cast<unsigned long long>(counts_.bytes_damaged));
         for (std::size_t i = 0; i < fault_kinds; ++i) {
             if (counts_.faults[i] > 0) {
                 std::printf(" %s %llu,", std::string{to_string(static_cast<Fault>(i))}.c_str(),

@@ -156,6 +156,8 @@ Scenario draw_scenario(std::uint64_t seed, Profile profile) {
     scenario.reprints_percent = random.chance(0.2) ? 30 : 0;
     if (faulty) {
         draw_faults(scenario, Random{seed}.fork(3));
+        Random serial = Random{seed}.fork(4);
+        scenario.damage = serial.chance(0.1) ? 1e-5 * static_cast<double>(serial.spread(10, 1000)) : 0;
     }
     return scenario;
 }

@@ -69,7 +69,7 @@ struct Scenario {
     Span latency{std::chrono::microseconds{100}, std::chrono::microseconds{200}};
     double split = 0; ///< probability that a piece of bytes arrives in several parts
     double slow_write = 0;
-    double damage = 0; ///< probability that a piece of bytes arrives damaged: for lines without CRC nothing else helps
+    double damage = 0; ///< probability that a piece of bytes arrives with one lost or damaged (serial)
     // The disk
     Span commit{std::chrono::microseconds{100}, std::chrono::milliseconds{5}};
     Duration gather = std::chrono::milliseconds{10};

@@ -56,14 +56,28 @@ void Wire::put(Connection& connection, bool to_printer, std::string_view bytes) 
     chunk.to_printer = to_printer;
     chunk.bytes.assign(bytes);
     if (context_.scenario.damage > 0 && random_.chance(context_.scenario.damage)) {
-        char& byte = chunk.bytes[random_.below(chunk.bytes.size())];
-        if (random_.chance(0.5)) {
-            byte = static_cast<char>(random_.below(256));
-        } else {
-            chunk.bytes.erase(static_cast<std::size_t>(&byte - chunk.bytes.data()), 1);
-        }
+        damage(chunk.bytes, to_printer);
     }
     context_.queue.put(last, EventKind::chunk, index);
+}
+
+/// A serial line loses a byte, or makes one of another. Without CRC32 nobody can tell a digit from another, or a letter
+/// on a product: so a digit of an answer becomes no other digit, and of what goes to the printer only the ends of
+/// frames are hit.
+void Wire::damage(std::string& bytes, bool to_printer) {
+    std::size_t at = random_.below(bytes.size());
+    if (to_printer) {
+        at = bytes.find_first_of("^\r", at);
+        if (at == std::string::npos || (at > 0 && bytes[at - 1] == '\\')) {
+            return;
+        }
+    }
+    if (random_.chance(0.5)) {
+        bytes[at] = static_cast<char>(0x80U | random_.below(0x80));
+    } else {
+        bytes.erase(at, 1);
+    }
+    ++context_.counts.bytes_damaged;
 }
 
 void Wire::deliver(std::uint64_t index, WireEnds& ends) {

@@ -62,6 +62,7 @@ private:
     [[nodiscard]] Connection* find(std::uint64_t id);
     void send(std::uint64_t connection, bool to_printer, std::string_view bytes);
     void put(Connection& connection, bool to_printer, std::string_view bytes);
+    void damage(std::string& bytes, bool to_printer);
 
     Context& context_;
     Random random_;

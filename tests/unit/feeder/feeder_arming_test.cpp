@@ -60,14 +60,14 @@ TEST(FeederArming, shouldStartWithoutIdentityAndCounter) {
     story.start();
     story.rs(State::ready_to_print);
     story.take();
-    story.no_answer(protocol::Parameter::JL);
+    story.lost(protocol::Parameter::JL);
     story.expect("");
-    story.no_answer(protocol::Parameter::VS);
+    story.lost(protocol::Parameter::VS);
     story.expect("?SM");
     story.sm(0, 77, 0);
     story.sm(0, 77, 0);
     story.take();
-    story.no_answer(protocol::Parameter::CC);
+    story.lost(protocol::Parameter::CC);
     ASSERT_EQ(story.actions.size(), 1U);
     EXPECT_EQ(std::get<BeginRun>(story.actions[0]).printer, PrinterFacts{});
 }

@@ -136,42 +136,99 @@ TEST(FeederEveryPhase, shouldNeitherFlushNorAcknowledgeWhatTheLedgerDoesNotKnow)
     }
 }
 
-TEST(FeederEveryPhase, shouldEndWhenThePrinterDoesNotSayItsStateOrPlaceInEveryPhase) {
-    for (const Parameter what : {Parameter::RS, Parameter::SM}) {
-        const auto end = [](const std::string& state) { return ended(OutcomeCode::no_answer, state); };
-        expect_in_every_phase(
-            {
-                {Phase::idle, end("standby, error 0")},
-                {Phase::identifying, end("standby, error 0")},
-                {Phase::locating, ended(OutcomeCode::no_answer)},
-                {Phase::taking_over, end("printing, error 0")},
-                {Phase::halting, end("printing, error 0")},
-                {Phase::opening_nozzle, end("ready for action, error 0")},
-                {Phase::acknowledging, end("ready for print start, error " + std::to_string(end_message))},
-                {Phase::granting, ended(OutcomeCode::no_answer)},
-                {Phase::flushing, ended(OutcomeCode::no_answer)},
-                {Phase::setting_stop, ended(OutcomeCode::no_answer)},
-                {Phase::loading, ended(OutcomeCode::no_answer)},
-                {Phase::verifying, "!ST; " + ended(OutcomeCode::no_answer)}, // it may still listen
-                {Phase::starting, "!ST; " + ended(OutcomeCode::no_answer)},
-                {Phase::printing, "!ST; " + end("printing, error 0")},
-                {Phase::stopping, "!ST; " + end("printing, error 0")},
-                {Phase::judging, "!ST; " + ended(OutcomeCode::no_answer)},
-                {Phase::finishing,
-                 ended(OutcomeCode::finished, "ready for print start, error " + std::to_string(end_message))},
-                {Phase::recording, "!ST; " + ended(OutcomeCode::no_answer)},
-                {Phase::clearing, "!ST; " + ended(OutcomeCode::no_answer)},
-                {Phase::ended, ""},
-            },
-            [what](Story& story) { story.no_answer(what); });
-    }
+TEST(FeederEveryPhase, shouldEndWhenThePrinterIsSilentInEveryPhase) {
+    const auto end = [](const std::string& state) { return ended(OutcomeCode::no_answer, state); };
+    expect_in_every_phase(
+        {
+            {Phase::idle, end("standby, error 0")},
+            {Phase::identifying, end("standby, error 0")},
+            {Phase::locating, ended(OutcomeCode::no_answer)},
+            {Phase::taking_over, end("printing, error 0")},
+            {Phase::halting, end("printing, error 0")},
+            {Phase::opening_nozzle, end("ready for action, error 0")},
+            {Phase::acknowledging, end("ready for print start, error " + std::to_string(end_message))},
+            {Phase::granting, ended(OutcomeCode::no_answer)},
+            {Phase::flushing, ended(OutcomeCode::no_answer)},
+            {Phase::setting_stop, ended(OutcomeCode::no_answer)},
+            {Phase::loading, ended(OutcomeCode::no_answer)},
+            {Phase::verifying, "!ST; " + ended(OutcomeCode::no_answer)}, // it may still listen
+            {Phase::starting, "!ST; " + ended(OutcomeCode::no_answer)},
+            {Phase::printing, "!ST; " + end("printing, error 0")},
+            {Phase::stopping, "!ST; " + end("printing, error 0")},
+            {Phase::judging, "!ST; " + ended(OutcomeCode::no_answer)},
+            {Phase::finishing,
+             ended(OutcomeCode::finished, "ready for print start, error " + std::to_string(end_message))},
+            {Phase::recording, "!ST; " + ended(OutcomeCode::no_answer)},
+            {Phase::clearing, "!ST; " + ended(OutcomeCode::no_answer)},
+            {Phase::ended, ""},
+        },
+        [](Story& story) { story.silent(); });
+}
+
+/// `?SM` is asked again where nothing goes on without it; while it prints, it comes again by itself.
+TEST(FeederEveryPhase, shouldAskAgainForALostMailStatusWhereItIsNeeded) {
+    expect_in_every_phase(
+        {
+            {Phase::idle, ""},          {Phase::identifying, ""},
+            {Phase::locating, "?SM"},   {Phase::taking_over, "?SM"},
+            {Phase::halting, ""},       {Phase::opening_nozzle, ""},
+            {Phase::acknowledging, ""}, {Phase::granting, ""},
+            {Phase::flushing, "?SM"},   {Phase::setting_stop, "?SM"},
+            {Phase::loading, ""},       {Phase::verifying, "?SM"},
+            {Phase::starting, ""},      {Phase::printing, ""},
+            {Phase::stopping, ""},      {Phase::judging, "?SM"},
+            {Phase::finishing, ""},     {Phase::recording, ""},
+            {Phase::clearing, "?SM"},   {Phase::ended, ""},
+        },
+        [](Story& story) {
+            for (int outstanding = 0; outstanding < 4 && story.text_of_actions().empty(); ++outstanding) {
+                story.lost(Parameter::SM); // all that were under way
+            }
+        });
+}
+
+TEST(FeederEveryPhase, shouldAskAgainForALostMachineStatusWhereItIsNeeded) {
+    expect_in_every_phase(
+        {
+            {Phase::idle, ""},
+            {Phase::identifying, "?RS"},
+            {Phase::locating, ""},
+            {Phase::taking_over, ""},
+            {Phase::halting, "?RS"},
+            {Phase::opening_nozzle, "?RS"},
+            {Phase::acknowledging, "?RS"},
+            {Phase::granting, ""},
+            {Phase::flushing, ""},
+            {Phase::setting_stop, ""},
+            {Phase::loading, ""},
+            {Phase::verifying, ""},
+            {Phase::starting, "?RS"},
+            {Phase::printing, "?RS"},
+            {Phase::stopping, "?RS"},
+            {Phase::judging, "?RS"},
+            {Phase::finishing, "?RS"},
+            {Phase::recording, ""},
+            {Phase::clearing, "?RS"},
+            {Phase::ended, ""},
+        },
+        [](Story& story) { story.lost(Parameter::RS); });
+}
+
+TEST(FeederEveryPhase, shouldGiveUpWhenAnAnswerIsLostAgainAndAgain) {
+    Story story = reach(Phase::judging);
+    story.lost(Parameter::RS);
+    story.lost(Parameter::RS);
+    story.lost(Parameter::RS);
+    story.expect("?RS; ?RS; ?RS");
+    story.lost(Parameter::RS);
+    story.expect("!ST; " + ended(OutcomeCode::no_answer));
 }
 
 TEST(FeederEveryPhase, shouldGoOnWithoutIdentityOrCounterInEveryPhase) {
     for (const Phase phase : all_phases) {
         for (const Parameter what : {Parameter::VS, Parameter::JL}) {
             Story story = reach(phase);
-            story.no_answer(what);
+            story.lost(what);
             story.expect("");
             EXPECT_EQ(story.phase(), phase);
         }
@@ -181,7 +238,7 @@ TEST(FeederEveryPhase, shouldGoOnWithoutIdentityOrCounterInEveryPhase) {
     story.sm(0, 104, 0);
     story.sm(0, 104, 0);
     story.take();
-    story.no_answer(Parameter::CC);
+    story.lost(Parameter::CC);
     story.expect("settle this run: printed 101-104, in doubt none, unused none by mail status; " +
                  ended(OutcomeCode::stop_requested));
 }
@@ -255,8 +312,9 @@ TEST(FeederEveryPhase, shouldDoNothingAfterTheEnd) {
         story.stop();
         story.wait(seconds{1000});
         for (const Parameter what : {Parameter::RS, Parameter::SM, Parameter::VS, Parameter::JL, Parameter::CC}) {
-            story.no_answer(what);
+            story.lost(what);
         }
+        story.silent();
         story.link_lost();
         story.expect("");
         EXPECT_EQ(story.feeder.next_wake(), std::nullopt);

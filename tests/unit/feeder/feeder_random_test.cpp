@@ -214,7 +214,13 @@ private:
             return; // while the ledger is awaited, nothing is under way
         }
         if (draw(60) == 0) {
-            tell([&](Actions& out) { feeder_.on_no_answer(what, now_, out); });
+            tell([&](Actions& out) {
+                if (draw(2) == 0) {
+                    feeder_.on_silence(out);
+                } else {
+                    feeder_.on_lost_answer(what, now_, out);
+                }
+            });
             return;
         }
         switch (what) {

@@ -246,7 +246,7 @@ TEST(FeederStopping, shouldRememberTheCounterOfTheFirstLook) {
     story.settled();
     story.rs(State::ready_to_print);
     story.say_where(0, 103);
-    story.no_answer(protocol::Parameter::CC);
+    story.lost(protocol::Parameter::CC);
     EXPECT_NE(story.take().find("in doubt 101-104"), std::string::npos);
 }
 

@@ -296,7 +296,7 @@ private:
                 break;
             case protocol::Parameter::CC:
                 if (faults_.broken_counter) {
-                    feeder_->on_no_answer(what, now_, out);
+                    feeder_->on_lost_answer(what, now_, out);
                 } else {
                     feeder_->on_counters({.product = {}, .stop_after = {}, .total = total}, now_, out);
                 }

@@ -52,6 +52,7 @@ public:
         EXPECT_EQ(text(actions), story);
         actions.clear();
     }
+    [[nodiscard]] std::string text_of_actions() const { return text(actions); }
     std::string take() {
         std::string story = text(actions);
         actions.clear();
@@ -79,7 +80,8 @@ public:
         feeder.on_version(version, now, actions);
     }
     void jl() { feeder.on_job_name({"\\FFSDISK\\JOBS\\A.job"}, now, actions); }
-    void no_answer(protocol::Parameter what) { feeder.on_no_answer(what, now, actions); }
+    void lost(protocol::Parameter what) { feeder.on_lost_answer(what, now, actions); }
+    void silent() { feeder.on_silence(actions); }
     void link_lost() { feeder.on_link_lost(actions); }
     void granted(std::uint32_t from = first, std::uint32_t to = last, std::uint32_t durable_through = last) {
         feeder.on_granted(RecordRange::closed(RecordNumber{from}, RecordNumber{to}), RecordNumber{durable_through}, now,

@@ -4,6 +4,7 @@
 #include "conversation.hpp"
 
 #include <array>
+#include <utility>
 
 namespace linefeed::session {
 namespace {
@@ -149,15 +150,21 @@ void lend_pages(ManualSession& manual, std::size_t& lent) {
 void play(ManualSession& manual) {
     Conversation& host = manual.host();
     std::size_t lent = 0;
+    bool asked_for_state = false; // now and then
+    const auto answer_state = [&] {
+        if (std::exchange(asked_for_state, false)) {
+            manual.answer({"=RS2\t6\t0\t0\t9\t0"});
+        }
+    };
     const auto next_inquiry = [&] {
+        answer_state(); // in the order of the inquiries: behind =SM
         for (std::string asked; asked.find("^0?SM\n") == std::string::npos;) {
+            answer_state();
             host.wake();
             asked = manual.sent();
             ASSERT_TRUE(asked.empty() || asked == "^0?RS\n" || asked == "^0?SM\n" || asked == "^0?SM\n^0?RS\n")
                 << asked;
-            if (asked.find("^0?RS\n") != std::string::npos) {
-                manual.answer({"=RS2\t6\t0\t0\t9\t0"}); // now and then it asks for the state as well
-            }
+            asked_for_state = asked.find("^0?RS\n") != std::string::npos;
         }
     };
 

@@ -99,6 +99,38 @@ TEST(Session, shouldStopALineThatDoesNotAnswerAnyMore) {
     EXPECT_EQ(host.pages_released, pages.size());
 }
 
+/// On a serial line an answer may be damaged: that stops nothing.
+TEST(Session, shouldAskAgainWhenAnAnswerIsLost) {
+    Conversation host;
+    host.connect();
+    host.wait(seconds{1});
+    host.receive("^0=RS5\r"); // a part of it
+    host.sent();
+    host.wait(seconds{1});
+    EXPECT_EQ(host.sent(), "^0?RS\n");
+    EXPECT_FALSE(host.ended);
+}
+
+/// Answers come in the order of the inquiries: a `=RS` shows that the `=SM` before it will not come any more.
+TEST(Session, shouldForgetTheInquiriesBeforeAnAnsweredStatus) {
+    const auto pages = thousand_records();
+    Conversation host;
+    host.print(pages);
+    std::string asked;
+    while (asked.find("^0?RS") == std::string::npos) {
+        host.wake();
+        asked += host.sent();
+    }
+    EXPECT_NE(asked.find("^0?SM"), std::string::npos);
+    host.receive(printing);
+    for (int polls = 0; polls < feeder::Pacing::max_inquiries; ++polls) {
+        host.wake(); // all of them may be under way again
+    }
+    asked = host.sent();
+    EXPECT_GE(std::ranges::count(asked, 'M'), feeder::Pacing::max_inquiries - 1);
+    EXPECT_FALSE(host.ended);
+}
+
 TEST(Session, shouldAnswerEachInquiryOnceInOrder) {
     const auto pages = thousand_records();
     Conversation host;
