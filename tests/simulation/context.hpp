@@ -18,7 +18,7 @@ struct Counts {
     std::uint64_t starts = 0;   ///< of the program
     std::uint64_t in_doubt = 0; ///< records named in doubt
     std::uint64_t bytes_damaged = 0;
-    Duration printing{0};       ///< time in state printing
+    Duration printing{0}; ///< time in state printing
     Duration simulated{0};
     std::array<std::uint64_t, fault_kinds> faults{};
 

@@ -20,6 +20,9 @@ Faults::Faults(Context& context, Judge& judge, Line& line, Wire& wire, Host& hos
     , operator_(person)
     , random_(random)
     , left_(context.scenario.faults) {
+    if (context.scenario.start_under_fill) {
+        start_under_fill();
+    }
     schedule();
 }
 
@@ -84,6 +87,7 @@ bool Faults::cause(Fault fault) {
     case Fault::printer_restart:
     case Fault::another_printer:
     case Fault::belt_pause:
+    case Fault::start_under_fill:
         return cause_at_printer(fault);
     case Fault::another_job:
     case Fault::second_client:
@@ -182,6 +186,20 @@ void Faults::stop_under_refill() {
         gap_ = true;
         line_.act([](PrinterModel& model, Instant now) { model.press(Action::stop_print, now); });
         repair_later(Fault::stop_under_refill, 1ms, 600ms);
+    });
+}
+
+/// A part of the first fill is thrown away before linefeed starts the printer.
+void Faults::start_under_fill() {
+    line_.at(Line::Moment::record, some_records(), context_.now + 300s, [this] {
+        if (!line_.look().printing()) {
+            count(Fault::start_under_fill);
+            gap_ = true;
+            line_.act([](PrinterModel& model, Instant now) {
+                model.press(Action::start_print, now);
+                model.press(Action::stop_print, now);
+            });
+        }
     });
 }
 

@@ -38,6 +38,7 @@ private:
     void start_between_looks();
     [[nodiscard]] bool kill_under_fill();
     /// So many records later than the next, often none.
+    void start_under_fill();
     [[nodiscard]] std::uint64_t some_records();
     [[nodiscard]] bool another_job();
     void ask_as_second_client();

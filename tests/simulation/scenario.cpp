@@ -10,12 +10,12 @@ using namespace std::chrono_literals;
 
 std::string_view to_string(Fault fault) {
     constexpr std::array<std::string_view, fault_kinds> names{
-        "operator stop",      "stop and go",     "stop under refill", "panel start",   "start between looks",
-        "stop by linefeed",   "printer error",   "cover opened",      "nozzle closed", "printer restart",
-        "another job",        "another printer", "second client",     "foreign stop",  "foreign flush",
-        "foreign stop point", "foreign record",  "process kill",      "kill in step",  "host power loss",
-        "both power loss",    "link cut",        "link silent",       "link stall",    "host pause",
-        "slow disk",          "disk full",       "belt pause"};
+        "operator stop",      "stop and go",     "stop under refill", "panel start",     "start between looks",
+        "stop by linefeed",   "printer error",   "cover opened",      "nozzle closed",   "printer restart",
+        "another job",        "another printer", "second client",     "foreign stop",    "foreign flush",
+        "foreign stop point", "foreign record",  "process kill",      "kill in step",    "host power loss",
+        "both power loss",    "link cut",        "link silent",       "link stall",      "host pause",
+        "slow disk",          "disk full",       "belt pause",        "start under fill"};
     return names[static_cast<std::size_t>(fault)];
 }
 
@@ -157,7 +157,8 @@ Scenario draw_scenario(std::uint64_t seed, Profile profile) {
     if (faulty) {
         draw_faults(scenario, Random{seed}.fork(3));
         Random serial = Random{seed}.fork(4);
-        scenario.damage = serial.chance(0.1) ? 1e-5 * static_cast<double>(serial.spread(10, 1000)) : 0;
+        scenario.damage = serial.chance(0.2) ? 1e-5 * static_cast<double>(serial.spread(10, 1000)) : 0;
+        scenario.start_under_fill = Random{seed}.fork(5).chance(0.1);
     }
     return scenario;
 }

@@ -43,8 +43,10 @@ enum class Fault : std::uint8_t {
     slow_disk,   ///< sometimes the program is killed over it
     disk_full,
     belt_pause,
+    start_under_fill, ///< started and stopped at the panel as the first records arrive; not drawn by weight
 };
-inline constexpr std::size_t fault_kinds = static_cast<std::size_t>(Fault::belt_pause) + 1;
+inline constexpr std::size_t fault_kinds = static_cast<std::size_t>(Fault::start_under_fill) + 1;
+inline constexpr std::size_t weighted_faults = static_cast<std::size_t>(Fault::start_under_fill);
 [[nodiscard]] std::string_view to_string(Fault fault);
 
 /// A stretch of time to draw from.
@@ -74,9 +76,10 @@ struct Scenario {
     Span commit{std::chrono::microseconds{100}, std::chrono::milliseconds{5}};
     Duration gather = std::chrono::milliseconds{10};
     // Faults
-    std::array<std::uint32_t, fault_kinds> weights{};
+    std::array<std::uint32_t, weighted_faults> weights{};
     std::uint32_t faults = 0; ///< so many, then everything is repaired
     Span fault_gap{std::chrono::milliseconds{1}, std::chrono::seconds{10}};
+    bool start_under_fill = false;
     // The operator
     bool open_nozzle = false;
     std::uint32_t skips_percent = 0; ///< of his decisions about records in doubt
