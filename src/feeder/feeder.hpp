@@ -84,8 +84,8 @@ public:
     void on_counters(const protocol::Counters& counters, Instant now, Actions& out);
     void on_version(const protocol::VersionInfo& version, Instant now, Actions& out);
     void on_job_name(const protocol::JobName& job, Instant now, Actions& out);
-    /// An inquiry got no answer, though the printer answers others. `?RS` and `?SM` are asked again where their answer is
-    /// waited for; the rest is evidence that is missing then.
+    /// An inquiry got no answer, though the printer answers others. `?RS` and `?SM` are asked again where their answer
+    /// is waited for; the rest is evidence that is missing then.
     void on_lost_answer(protocol::Parameter what, Instant now, Actions& out);
     /// The printer answers nothing at all.
     void on_silence(Actions& out);

@@ -51,6 +51,7 @@ void Feeder::takeover_step(Instant now, Actions& out) {
         taken_sent_through_ = RecordNumber{static_cast<std::uint32_t>(in_printer_through)};
         enter(Phase::granting, now, Duration::max());
         taking_over_ = true;
+        any_sent_ = true; // by the earlier run
         out.push_back(AdoptRun{std::max(sure, run.printed_through), taken_sent_through_, mail_});
     }
 }
@@ -77,7 +78,6 @@ void Feeder::taken_over(RecordRange range, RecordNumber durable_through, Instant
     total_before_ = run.total_before;
     left_over_ = run.last_printed_before;
     left_over_passed_ = true;
-    any_sent_ = true;
     enter(Phase::printing, now, Duration::max());
     pacing_.restart(now, refill_.printed_through() - range.first().previous());
     out.push_back(Notice{NoticeCode::taken_over, {}});

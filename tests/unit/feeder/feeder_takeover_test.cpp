@@ -48,6 +48,17 @@ TEST(FeederTakeover, shouldGoOnBehindTheLastRecordInThePrinter) {
     story.expect("intent through 232; =MR 169-169; ?CC; ?SM; ?SM");
 }
 
+/// Its records are in the printer, whether the ledger's answer comes in time or not: nobody may call them unused.
+TEST(FeederTakeover, shouldSayThatRecordsAreOutWhenItEndsBeforeTheLedgerAnswers) {
+    Story story = found_printing();
+    story.sm(2, 151, 200);
+    story.sm(2, 151, 200);
+    story.take();
+    story.link_lost();
+    ASSERT_TRUE(std::holds_alternative<End>(*story.actions.begin()));
+    EXPECT_TRUE(std::get<End>(*story.actions.begin()).outcome.issued);
+}
+
 TEST(FeederTakeover, shouldFinishTheRunItHasTakenOver) {
     Story story = found_printing();
     story.sm(2, 151, 200);

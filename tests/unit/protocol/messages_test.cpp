@@ -107,7 +107,6 @@ TEST(Messages, shouldReadTheMailStatusOfNewerFirmware) {
 
 TEST(Messages, shouldTakeAnyLastPrintAbove0ForFinished) {
     EXPECT_TRUE(parsed_as<MailStatus>("^0=SM256\t0\t3\t0\t2\r").last_print_finished);
-    EXPECT_TRUE(parsed_as<MailStatus>("^0=SM256\t0\t3\t0\r").last_print_finished);
     EXPECT_FALSE(parsed_as<MailStatus>("^0=SM256\t0\t3\t0\t0\t\r").last_print_finished);
 }
 
@@ -126,6 +125,8 @@ TEST(Messages, shouldRefuseAMailStatusThatCannotBeRead) {
     EXPECT_EQ(reason("^0=SM256\t0\t0\t0\t1\tx\r"), "=SM: parameter 6 is not a number of PrintGos: \"x\"");
     EXPECT_EQ(reason("^0=SM\r"), "=SM: parameter 1 is missing: a FIFO depth");
     EXPECT_EQ(reason("^0=SM256\t0\t\t0\t1\r"), "=SM: parameter 3 is missing: a record number");
+    EXPECT_EQ(reason("^0=SM256\t0\t3\t0\r"), "=SM: parameter 5 is missing: a number") << "no flag is no finished print";
+    EXPECT_EQ(reason("^0=SM256\t0\t3\t0\t\r"), "=SM: parameter 5 is missing: a number");
     EXPECT_EQ(reason("^0=SM256\t0\t0\r"), "=SM: parameter 4 is missing: a record number");
 }
 
