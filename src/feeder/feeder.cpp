@@ -2,6 +2,7 @@
 #include "feeder/feeder.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace linefeed::feeder {
 
@@ -18,9 +19,9 @@ Feeder::Feeder(const FeederSettings& settings, const FeederPlan& plan)
     , pacing_(settings.pacing) {}
 
 void Feeder::on_machine_status(const protocol::MachineStatus& status, Instant now, Actions& out) {
+    answers_lost_ = 0;
     status_ = status;
     status_outstanding_ = false;
-    answers_lost_ = 0;
     switch (phase_) {
     case Phase::identifying:
         if (status_.machine == MachineState::standby) {
@@ -95,9 +96,9 @@ void Feeder::on_machine_status(const protocol::MachineStatus& status, Instant no
 
 void Feeder::on_mail_status(const protocol::MailStatus& status, Instant now, Actions& out) {
     mail_answered(now);
+    answers_lost_ = 0;
     mail_ = status;
     ++mail_reads_;
-    answers_lost_ = 0;
     switch (phase_) {
     case Phase::locating:
     case Phase::judging:
@@ -178,9 +179,21 @@ void Feeder::on_counters(const protocol::Counters& counters, Instant now, Action
 
 void Feeder::on_version(const protocol::VersionInfo& version, Instant now, Actions& out) {
     facts_.version = version;
+    if (version.serial_number.empty() && asks_version_again(now, out)) {
+        return; // with a TAB less it is not in its place
+    }
     if (--identity_answers_missing_ == 0) {
         identified(now, out);
     }
+}
+
+/// Without the serial number another printer cannot be told from this one.
+bool Feeder::asks_version_again(Instant now, Actions& out) {
+    const bool again = phase_ == Phase::identifying && !std::exchange(version_asked_again_, true);
+    if (again) {
+        ask(Parameter::VS, now, out);
+    }
+    return again;
 }
 
 void Feeder::on_job_name(const protocol::JobName& job, Instant now, Actions& out) {
@@ -196,13 +209,15 @@ void Feeder::on_lost_answer(Parameter what, Instant now, Actions& out) {
         return;
     }
     if (what == Parameter::VS || what == Parameter::JL) {
-        if (--identity_answers_missing_ == 0) {
+        // A printer that says its job's name says its serial number too.
+        const bool can_tell = what == Parameter::VS && facts_.job_name;
+        if (!(can_tell && asks_version_again(now, out)) && --identity_answers_missing_ == 0) {
             identified(now, out);
         }
         return;
     }
     if (what == Parameter::CC) {
-        on_counters({}, now, out);
+        counters_lost(now, out);
         return;
     }
     if (what == Parameter::SM) {
@@ -215,6 +230,23 @@ void Feeder::on_lost_answer(Parameter what, Instant now, Actions& out) {
         on_silence(out);
     } else if (again) {
         ask(what, now, out);
+    }
+}
+
+/// The counter is worth a second inquiry, and more of a printer that has told it before. While it prints, it is asked
+/// for again anyway.
+void Feeder::counters_lost(Instant now, Actions& out) {
+    if (polls()) {
+        counters_outstanding_ = std::max(0, counters_outstanding_ - 1);
+        return;
+    }
+    const bool again =
+        facts_.total_prints ? ++answers_lost_ <= max_answers_lost : !std::exchange(counter_asked_again_, true);
+    if (again && counters_outstanding_ == 1) {
+        --counters_outstanding_;
+        ask(Parameter::CC, now, out);
+    } else {
+        on_counters({}, now, out);
     }
 }
 

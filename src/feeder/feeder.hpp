@@ -127,6 +127,8 @@ private:
     void ask(protocol::Parameter what, Instant now, Actions& out);
     void mail_answered(Instant now);
     void forget_oldest_mail();
+    [[nodiscard]] bool asks_version_again(Instant now, Actions& out);
+    void counters_lost(Instant now, Actions& out);
     [[nodiscard]] bool waits_for_mail() const;
     [[nodiscard]] bool waits_for_status() const;
     void ask_later(protocol::Parameter what, Instant now);
@@ -164,6 +166,7 @@ private:
     void print_mail(Instant now, Actions& out);
     [[nodiscard]] bool follow(Instant now, Actions& out);
     void poll_on(Instant now);
+    void watch_left_over();
     [[nodiscard]] bool take_report(Instant now, Actions& out);
     void confirm_reported(Actions& out);
     void ask_for_proof(Instant now, Actions& out);
@@ -176,7 +179,6 @@ private:
     void insist_on_stop_point(Actions& out);
     void all_printed(Instant now, Actions& out);
     void refill_now(Actions& out);
-    [[nodiscard]] bool marker_printed() const;
 
     // feeder_stopping.cpp: from the last print or an interruption to the end
     void begin_stop(OutcomeCode cause, Instant now, Actions& out);
@@ -214,6 +216,8 @@ private:
     int mail_outstanding_ = 0;
     int counters_outstanding_ = 0;
     int answers_lost_ = 0; ///< asked for again, one after the other
+    bool version_asked_again_ = false;
+    bool counter_asked_again_ = false;
     bool status_outstanding_ = false;
     std::optional<Instant> deadline_; ///< of the phase
     std::optional<Instant> retry_at_;
@@ -227,9 +231,10 @@ private:
     RecordNumber taken_sent_through_;
     RecordNumber number_before_count_; ///< reported before `?CC` was asked
 
-    std::int32_t acknowledged_ = 0; ///< the error that `!EQ` was sent for
-    RecordNumber left_over_;        ///< last printed number that stood in the printer before this run
-    bool left_over_passed_ = false; ///< the printer has reported another number since
+    std::int32_t acknowledged_ = 0;  ///< the error that `!EQ` was sent for
+    RecordNumber left_over_;         ///< last printed number that stood in the printer before this run
+    bool left_over_passed_ = false;  ///< the printer has reported another number since
+    bool other_number_seen_ = false; ///< in the last answer
     std::optional<std::uint32_t> total_before_;
     StopPoint stop_point_ = StopPoint::unset;
     int stop_point_tries_ = 0;

@@ -68,20 +68,24 @@ void Feeder::poll_on(Instant now) {
     mail_due_ = std::max(now, std::min(mail_due_, now + pacing_.poll_interval(refill_.level()))) + least;
 }
 
-/// The end marker's number may have been there before the run: then it is no proof.
-bool Feeder::marker_printed() const {
-    return marker_sent_ && mail_.last_printed == refill_.range().last().next() &&
-           (left_over_passed_ || mail_.last_printed != left_over_);
+/// A number from before the run that could be one of it is gone only when two answers in a row say so: a serial line
+/// may lose a digit.
+void Feeder::watch_left_over() {
+    const bool other = mail_.last_printed != left_over_;
+    const RecordRange range = refill_.range();
+    const bool could_be_ours = range.first() <= left_over_ && left_over_ <= range.last();
+    left_over_passed_ = left_over_passed_ || (other && (other_number_seen_ || !could_be_ours));
+    other_number_seen_ = other;
 }
 
 /// Takes the printed number from `mail_`. False if it cannot be right: then the line is being stopped.
 bool Feeder::take_report(Instant now, Actions& out) {
     const bool none_yet = refill_.printed_through() < refill_.range().first();
-    left_over_passed_ = left_over_passed_ || mail_.last_printed != left_over_;
+    watch_left_over();
     if (!left_over_passed_ || (none_yet && mail_.last_printed == RecordNumber{})) {
         return true; // the number was there before this run
     }
-    const bool behind_last = marker_printed();
+    const bool behind_last = marker_sent_ && mail_.last_printed == refill_.range().last().next();
     const RecordNumber printed = behind_last ? refill_.range().last() : mail_.last_printed;
     if (!refill_.printed(printed)) {
         memory_lost_ = printed < refill_.printed_through();

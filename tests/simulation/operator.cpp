@@ -133,11 +133,11 @@ cli::OperatorWord Operator::decides() {
 /// The records in doubt that are on products, for --printed.
 std::string Operator::names_products(const std::vector<RecordRange>& doubt) {
     std::string names;
+    named_ = judge_.last();
     for (const RecordRange& range : doubt) {
         for (std::uint64_t i = 0; i < range.count().value(); ++i) {
             const RecordNumber number = range.first() + RecordCount{i};
             if (judge_.is_on_a_product(number)) {
-                named_ = std::max(named_, number);
                 names += (names.empty() ? "" : ",") + std::to_string(number.value());
             }
         }

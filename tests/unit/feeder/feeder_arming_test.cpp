@@ -68,8 +68,32 @@ TEST(FeederArming, shouldStartWithoutIdentityAndCounter) {
     story.sm(0, 77, 0);
     story.take();
     story.lost(protocol::Parameter::CC);
+    story.expect("?CC"); // the answer may be damaged: once more
+    story.lost(protocol::Parameter::CC);
     ASSERT_EQ(story.actions.size(), 1U);
     EXPECT_EQ(std::get<BeginRun>(story.actions[0]).printer, PrinterFacts{});
+}
+
+TEST(FeederArming, shouldAskAgainForASerialNumberThatOnlyGotLost) {
+    Story story;
+    story.start();
+    story.rs(State::ready_to_print);
+    story.jl();
+    story.take();
+    story.lost(protocol::Parameter::VS);
+    story.expect("?VS");
+    story.lost(protocol::Parameter::VS);
+    story.expect("?SM");
+
+    Story damaged;
+    damaged.start();
+    damaged.rs(State::ready_to_print);
+    damaged.take();
+    damaged.vs(""); // a TAB less
+    damaged.expect("?VS");
+    damaged.vs("S1");
+    damaged.jl();
+    damaged.expect("?SM");
 }
 
 // Every refusal before the start.

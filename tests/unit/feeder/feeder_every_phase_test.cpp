@@ -239,6 +239,10 @@ TEST(FeederEveryPhase, shouldGoOnWithoutIdentityOrCounterInEveryPhase) {
     story.sm(0, 104, 0);
     story.take();
     story.lost(Parameter::CC);
+    story.lost(Parameter::CC);
+    story.lost(Parameter::CC);
+    story.expect("?CC; ?CC; ?CC"); // it has been answered before
+    story.lost(Parameter::CC);
     story.expect("settle this run: printed 101-104, in doubt none, unused none by mail status; " +
                  ended(OutcomeCode::stop_requested));
 }

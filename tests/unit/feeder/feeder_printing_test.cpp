@@ -66,6 +66,12 @@ TEST(FeederPrinting, shouldNotTakeANumberFromBeforeThatLiesWithinTheRunForARepor
     story.sm(3, 103, 110);
     story.expect("");
     EXPECT_EQ(story.feeder.refill().level(), RecordCount{4}) << "no credit from an old number";
+    story.sm(3, 10, 110);
+    story.expect("");
+    story.sm(3, 103, 110);
+    story.expect(""); // a digit had been lost on the line
+    story.sm(2, 101, 110);
+    story.expect("");
     story.sm(2, 101, 110);
     story.expect("printed through 101; =MR 105-105");
     story.sm(1, 103, 110);

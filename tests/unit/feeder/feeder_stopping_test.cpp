@@ -246,7 +246,9 @@ TEST(FeederStopping, shouldRememberTheCounterOfTheFirstLook) {
     story.settled();
     story.rs(State::ready_to_print);
     story.say_where(0, 103);
-    story.lost(protocol::Parameter::CC);
+    for (int tries = 0; tries < 4; ++tries) {
+        story.lost(protocol::Parameter::CC);
+    }
     EXPECT_NE(story.take().find("in doubt 101-104"), std::string::npos);
 }
 

@@ -198,6 +198,7 @@ TEST(FeederTakeover, shouldDoWithoutTheCounter) {
     story.sm(3, 150, 200);
     story.sm(3, 150, 200);
     story.lost(protocol::Parameter::CC);
+    story.lost(protocol::Parameter::CC);
     story.sm(2, 151, 200);
     story.take();
     story.sm(2, 151, 200);

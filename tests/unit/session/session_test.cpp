@@ -9,6 +9,7 @@ using std::chrono::milliseconds;
 using std::chrono::seconds;
 
 const std::string not_printing = "^0=RS2\t5\t0\t0\t0\t0\r";
+const std::string identity = "^0=VS1\t1\t1\t1\t1\t1\t1\t1\t1\t1\tS1\r^0=JLA\r";
 const std::string printing = "^0=RS2\t6\t0\t0\t0\t0\r";
 
 std::string mail(std::uint32_t entries, std::uint32_t last_printed, std::uint32_t stop_at) {
@@ -82,6 +83,8 @@ TEST(Session, shouldGoOnWithoutTheAnswersThatAreNotNeeded) {
     EXPECT_EQ(host.sent(), "^0?SM\n^0?CC\n");
     host.receive("^0=VS1\t1\t1\t1\t1\t1\t1\t1\t1\t1\tS1\r"); // too late
     EXPECT_EQ(host.session.statistics().frames_unexpected, 1U);
+    host.wait(seconds{2});
+    EXPECT_EQ(host.sent(), "^0?CC\n"); // once more
     host.wait(seconds{2});
     EXPECT_EQ(host.story(), "begin run, last printed before 0");
 }
@@ -184,7 +187,7 @@ TEST(Session, shouldTakePagesThatComeBeforeTheGrant) {
     host.connect();
     host.receive(not_printing);
     host.page(*pages[0]);
-    host.receive("^0=VS1\r^0=JLA\r" + mail(0, 0, 0) + mail(0, 0, 0) + "^0=CC0\t0\t0\r");
+    host.receive(identity + mail(0, 0, 0) + mail(0, 0, 0) + "^0=CC0\t0\t0\r");
     host.grant(1, 10);
     host.receive(mail(0, 0, 0) + mail(0, 0, 10));
     const std::string sent = host.sent();
@@ -195,7 +198,7 @@ TEST(Session, shouldTakeAGrantThatComesBehindTheEnd) {
     const auto pages = make_pages(1, 10, 10, plain_text);
     Conversation host;
     host.connect();
-    host.receive(not_printing + "^0=VS1\r^0=JLA\r" + mail(0, 0, 0) + mail(0, 0, 0) + "^0=CC0\t0\t0\r");
+    host.receive(not_printing + identity + mail(0, 0, 0) + mail(0, 0, 0) + "^0=CC0\t0\t0\r");
     host.writes_complete_at_once = false;
     host.page(*pages[0]);
     host.stop();
@@ -208,7 +211,7 @@ TEST(Session, shouldTakeAGrantThatComesBehindTheEnd) {
 TEST(Session, shouldEndWhenTheLedgerRefuses) {
     Conversation host;
     host.connect();
-    host.receive(not_printing + "^0=VS1\r^0=JLA\r" + mail(0, 0, 0) + mail(0, 0, 0) + "^0=CC0\t0\t0\r");
+    host.receive(not_printing + identity + mail(0, 0, 0) + mail(0, 0, 0) + "^0=CC0\t0\t0\r");
     host.story();
     host.refuse(OutcomeCode::nothing_to_print);
     EXPECT_EQ(host.story(), "end: nothing_to_print (ready for print start, error 0); close");
@@ -366,7 +369,7 @@ TEST(Session, shouldSendABlankEndMarkerWithTheFieldsOfTheRecords) {
     settings.charsets.assign(3, protocol::Charset::latin1);
     Conversation host{settings};
     host.connect();
-    host.receive(not_printing + "^0=VS1\r^0=JLA\r" + mail(0, 0, 0) + mail(0, 0, 0) + "^0=CC0\t0\t0\r");
+    host.receive(not_printing + identity + mail(0, 0, 0) + mail(0, 0, 0) + "^0=CC0\t0\t0\r");
     host.grant(1, 10);
     host.receive(mail(0, 0, 0) + mail(0, 0, 0) + mail(0, 0, 0));
     host.page(*pages[0]);
@@ -386,8 +389,8 @@ TEST(Session, shouldSpeakOfATakeover) {
     plan.take_over = true;
     Conversation host{{}, plan};
     host.connect();
-    host.receive(printing + "^0=VS1\r^0=JLA\r" + mail(3, 50, 100) + mail(3, 50, 100) + "^0=CC0\t0\t0\r" +
-                 mail(3, 50, 100) + mail(3, 50, 100));
+    host.receive(printing + identity + mail(3, 50, 100) + mail(3, 50, 100) + "^0=CC0\t0\t0\r" + mail(3, 50, 100) +
+                 mail(3, 50, 100));
     EXPECT_EQ(host.story(), "adopt run, printed through 50, sent through 54");
 }
 
@@ -402,7 +405,7 @@ TEST(Session, shouldBoundWhatGathersBehindAWrite) {
         }
     };
     host.connect();
-    host.receive(not_printing + "^0=VS1\r^0=JLA\r" + mail(0, 0, 0) + mail(0, 0, 0) + "^0=CC0\t0\t0\r");
+    host.receive(not_printing + identity + mail(0, 0, 0) + mail(0, 0, 0) + "^0=CC0\t0\t0\r");
     host.grant(1, 4000);
     host.receive(mail(0, 0, 0) + mail(0, 0, 4000));
     lend();
