@@ -146,7 +146,7 @@ private:
             feeder_.on_counters({0, 0, printer_.printed}, now_, actions);
             return;
         default:
-            feeder_.on_no_answer(what, now_, actions);
+            feeder_.on_lost_answer(what, now_, actions);
         }
     }
 
