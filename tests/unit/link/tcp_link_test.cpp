@@ -97,8 +97,10 @@ protected:
         protocol::append_message(text, mail());
         printer_.write_some(boost::asio::buffer(text));
     }
+    /// The next record to be printed does not count: it lies in the print buffer.
     [[nodiscard]] protocol::MailStatus mail() const {
-        return {depth, received_ - printed_, RecordNumber{printed_}, stop_at_, true, {}};
+        const std::uint32_t level = received_ - printed_;
+        return {depth, std::max(level, 1U) - 1, RecordNumber{printed_}, stop_at_, true, {}};
     }
     std::string_view read() {
         boost::system::error_code nothing_yet;
