@@ -171,7 +171,7 @@ void Feeder::on_time(Instant now, Actions& out) {
     if (go_due_ && now >= *go_due_) {
         go(now, out);
     }
-    if (polls() && now >= mail_due_ && mail_outstanding_ < Pacing::max_inquiries) {
+    if (polls() && now >= mail_due_ && mail_outstanding_ < pacing_.inquiries_at_most()) {
         ask(Parameter::SM, now, out);
     }
     if (phase_ == Phase::printing && now >= status_due_ && !status_outstanding_) {
@@ -189,7 +189,7 @@ std::optional<Instant> Feeder::next_wake() const {
     consider(deadline_);
     consider(retry_at_);
     consider(go_due_);
-    if (polls() && mail_outstanding_ < Pacing::max_inquiries) {
+    if (polls() && mail_outstanding_ < pacing_.inquiries_at_most()) {
         consider(mail_due_);
     }
     if (phase_ == Phase::printing && !status_outstanding_) {

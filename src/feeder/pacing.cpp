@@ -9,6 +9,8 @@ Pacing::Pacing(const PacingSettings& settings)
     LINEFEED_ASSERT(Duration{0} < settings.poll_least && settings.poll_least <= settings.poll_min);
     LINEFEED_ASSERT(settings.poll_min <= settings.poll_max);
     LINEFEED_ASSERT(settings.burst_rate > 0 && settings.polls_per_buffer > 0);
+    LINEFEED_ASSERT(0 < settings.polls_per_filling && settings.polls_per_filling <= settings.polls_per_filling_max);
+    LINEFEED_ASSERT(settings.missing_share > 0);
 }
 
 void Pacing::restart(Instant now, RecordCount printed) {
@@ -16,11 +18,13 @@ void Pacing::restart(Instant now, RecordCount printed) {
     size_ = 1;
     samples_[0] = {printed, now};
     restarted_at_ = last_at_ = now;
+    last_count_ = printed;
 }
 
 void Pacing::printed(RecordCount count, Instant now) {
     LINEFEED_ASSERT(size_ > 0);
     last_at_ = now;
+    last_count_ = count;
     const std::size_t newest = (oldest_ + size_ - 1) % samples_kept;
     LINEFEED_ASSERT(count >= samples_[newest].count);
     // Samples closer together than this would let the array cover less than the window at fast polling.
@@ -57,9 +61,33 @@ bool Pacing::leaps(RecordCount count, Instant now) const {
     return static_cast<double>((count - newest.count).value()) > jitter + at_most * seconds;
 }
 
+/// Since the last sample: a line that starts after a standstill shows here long before it shows in the rate.
+double Pacing::latest_rate() const {
+    if (size_ == 0) {
+        return 0.0;
+    }
+    const Sample& newest = samples_[(oldest_ + size_ - 1) % samples_kept];
+    const double seconds = std::chrono::duration<double>(last_at_ - newest.at).count();
+    constexpr double least = 0.005; // one answer more or less must not look like a rate
+    return static_cast<double>((last_count_ - newest.count).value()) / std::max(seconds, least);
+}
+
 void Pacing::answered_after(Duration round_trip) {
-    constexpr int memory = 16; // answers until a single slow one is as good as forgotten
+    constexpr int memory = 16;                               // answers until a single slow one is as good as forgotten
+    constexpr Duration noise = std::chrono::milliseconds{1}; // of the schedulers
     round_trip_ = std::max(round_trip, round_trip_ - round_trip_ / memory);
+    shortest_round_trip_ = std::min(shortest_round_trip_, round_trip);
+    shortest_of_late_ = std::min(shortest_of_late_, round_trip);
+    if (round_trip <= 2 * shortest_round_trip_ + noise) {
+        inquiries_at_most_ = std::min(inquiries_at_most_ + 1, max_inquiries);
+    }
+    if (++answers_since_judged_ == answers_judged) {
+        if (shortest_of_late_ > 3 * shortest_round_trip_ + 2 * noise) {
+            inquiries_at_most_ = std::max(inquiries_at_most_ / 2, least_inquiries); // they queue
+        }
+        answers_since_judged_ = 0;
+        shortest_of_late_ = Duration::max();
+    }
 }
 
 /// Shortly after a start the line may run at any rate.
@@ -69,23 +97,34 @@ bool Pacing::rate_is_known() const {
 
 /// More often than every few prints brings nothing, and a slow line has time. What can be under way at once is spread
 /// over the time that an answer takes.
-Duration Pacing::least_interval() const {
-    constexpr double prints = 8.0;
+Duration Pacing::least_interval(RecordCount level) const {
+    constexpr double polls_per_filling = 32.0;
+    const double prints = std::max(static_cast<double>(level.value()) / polls_per_filling, 1.0);
     const std::chrono::duration<double> wanted{prints / std::max(rate(), 1.0)};
     const Duration least = rate_is_known() ? std::clamp(std::chrono::duration_cast<Duration>(wanted),
                                                         settings_.poll_least, settings_.poll_min)
                                            : settings_.poll_least;
-    return std::max(least, round_trip_ / max_inquiries);
+    return std::max(least, round_trip_ / inquiries_at_most_);
 }
 
 Duration Pacing::poll_interval(RecordCount level) const {
     using Seconds = std::chrono::duration<double>;
-    const Duration least = least_interval();
+    const Duration least = least_interval(level);
     if (!rate_is_known()) {
         return least;
     }
-    const Seconds to_empty{static_cast<double>(level.value()) / std::max(rate(), settings_.burst_rate)};
-    const Seconds wanted = (to_empty - round_trip_ - settings_.lead) / settings_.polls_per_buffer;
+    const auto records = static_cast<double>(level.value());
+    const double rate_now = std::max(rate(), latest_rate());
+    // The line may run at burst_rate in a moment: the buffer must not come to an end between two polls.
+    const Seconds to_empty{records / std::max(rate_now, settings_.burst_rate)};
+    const Seconds cautious = (to_empty - round_trip_ - settings_.lead) / settings_.polls_per_buffer;
+    // At the rate that it has: what the round trip leaves of the share that may be missing. No more than once a print.
+    const Seconds filling{records / std::max(rate_now, 1e-3)};
+    const Seconds print{1.0 / std::max(rate_now, 1e-3)};
+    const Seconds share = std::max(print, std::clamp<Seconds>(filling * settings_.missing_share - round_trip_,
+                                                              filling / settings_.polls_per_filling_max,
+                                                              filling / settings_.polls_per_filling));
+    const Seconds wanted = std::min(cautious, share);
     if (wanted >= Seconds{settings_.poll_max}) {
         return settings_.poll_max; // before the cast: the wish of a very slow line may not fit in a Duration
     }
@@ -97,7 +136,8 @@ bool Pacing::worth_sending(RecordCount credit, RecordCount level, RecordCount de
         return false;
     }
     const bool comfortable = level.value() * 2 >= depth.value();
-    const std::uint64_t block = std::max<std::uint64_t>(1, depth.value() / 16);
+    constexpr std::uint64_t blocks = 128; // in a FIFO; half of what a poll brings when answers are quick
+    const std::uint64_t block = std::max<std::uint64_t>(1, depth.value() / blocks);
     return !comfortable || credit.value() >= block;
 }
 

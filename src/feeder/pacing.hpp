@@ -1,5 +1,11 @@
 // How often to ask `?SM` and how much to refill at once (design, section 4). Asked too seldom, the FIFO runs empty;
 // asked too often, the printer's processor is kept from printing.
+//
+// What a stall of ours may last is what lies in the printer just before a refill arrives. The records printed since the
+// last answer was made are missing there: rate × (interval + round trip). That may be a sixteenth of the buffer: the
+// interval takes what the round trip leaves of it, within bounds behind which asking more often gains less than it
+// costs. Asking faster than the printer answers gains nothing at all: the questions queue, and the answers grow old on
+// the way.
 #pragma once
 
 #include "base/record_number.hpp"
@@ -19,8 +25,13 @@ struct PacingSettings {
     Duration poll_max = std::chrono::milliseconds{250};
     /// A standing line may start again at this rate (prints/s) at any moment.
     double burst_rate = 2000.0;
-    /// Polls in the time in which the buffer would run empty.
+    /// Polls in the time in which the buffer would run empty at that rate.
     double polls_per_buffer = 8.0;
+    /// The share of the buffer that may be printed before a refill for it arrives.
+    double missing_share = 1.0 / 16;
+    /// Polls in the time in which the line prints as much as is in the printer: if answers are quick, and at most.
+    double polls_per_filling = 64.0;
+    double polls_per_filling_max = 256.0;
     /// A record must lie in the FIFO so long before its PrintGo (protocol, section 5).
     Duration lead = std::chrono::milliseconds{3};
 };
@@ -29,7 +40,7 @@ struct PacingSettings {
 /// answer.
 class Pacing {
 public:
-    static constexpr int max_inquiries = 10; ///< under way at once
+    static constexpr int max_inquiries = 32; ///< under way at once, at most
 
     explicit Pacing(const PacingSettings& settings);
 
@@ -43,29 +54,41 @@ public:
     [[nodiscard]] bool leaps(RecordCount count, Instant now) const;
     /// An answer took this long: a refill is late by as much, so the buffer holds that much less.
     void answered_after(Duration round_trip);
+    /// So many inquiries may be under way. As many as one likes if it is the way that takes the time; few if the
+    /// printer takes one after the other.
+    [[nodiscard]] int inquiries_at_most() const { return inquiries_at_most_; }
     /// How long after one inquiry the next is due, with `level` records in the printer at most.
     [[nodiscard]] Duration poll_interval(RecordCount level) const;
     /// Whether `credit` records should be sent now, or rather be collected into a larger block.
     [[nodiscard]] static bool worth_sending(RecordCount credit, RecordCount level, RecordCount depth);
 
 private:
+    [[nodiscard]] double latest_rate() const;
     [[nodiscard]] bool rate_is_known() const;
-    [[nodiscard]] Duration least_interval() const;
+    [[nodiscard]] Duration least_interval(RecordCount level) const;
 
     struct Sample {
         RecordCount count;
         Instant at;
     };
+    static constexpr int first_inquiries = 4; ///< under way, before it is known how the printer takes them
+    static constexpr int least_inquiries = 2;
+    static constexpr int answers_judged = 8; ///< together: one that was late by chance says nothing
     static constexpr std::size_t samples_kept = 64;
     static constexpr Duration window = std::chrono::seconds{1};
 
     PacingSettings settings_;
     Duration round_trip_{0}; ///< of late; falls slowly
+    Duration shortest_round_trip_{Duration::max()};
+    Duration shortest_of_late_{Duration::max()}; ///< of the last answers_judged at most
+    int answers_since_judged_ = 0;
+    int inquiries_at_most_ = first_inquiries;
     std::array<Sample, samples_kept> samples_{};
     std::size_t oldest_ = 0;
     std::size_t size_ = 0;
     Instant restarted_at_{};
     Instant last_at_{};
+    RecordCount last_count_;
 };
 
 } // namespace linefeed::feeder

@@ -93,7 +93,7 @@ private:
         protocol::Parameter what = protocol::Parameter::SM;
         Instant deadline{};
     };
-    static constexpr std::size_t max_inquiries = 24;
+    static constexpr std::size_t max_inquiries = 64;
 
     void take_frame(const protocol::Frame& frame, Instant now, feeder::Actions& actions);
     [[nodiscard]] bool take_answer(const protocol::Message& message, Instant now, feeder::Actions& actions);

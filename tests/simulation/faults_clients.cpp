@@ -98,7 +98,8 @@ bool Faults::gap_would_show() {
     const feeder::PacingSettings pacing;
     const double beat = depth / (pacing.burst_rate * pacing.polls_per_buffer);
     const double spacing = 0.032; // of the samples in Pacing
-    const double gap = beat + (beat < spacing ? spacing : 0) + 2 * seconds(scenario.latency.high) * parts;
+    const double gap = beat + (beat < spacing ? spacing : 0) +
+                       3 * seconds(scenario.latency.high) * parts; // half a round trip later at the most
     const double unseen = 8 + 4 * pacing.burst_rate * gap;
     return context_.now > answers_late_until_ && static_cast<double>(lost) > unseen;
 }

@@ -24,6 +24,8 @@ bool Scenario::supply_is_sufficient() const {
     const auto seconds = [](Duration d) { return std::chrono::duration<double>(d).count(); };
     const double depth = printer.depth;
     // Split bytes and slow writes take up to four latencies each; the feeder polls every depth / 8000 s, 1 ms at least.
+    // A printer whose answers vary by more than three is asked half a round trip later at the most
+    // (Pacing::inquiries_at_most()): that, and the collecting of blocks, is in the half of the depth.
     const double parts = (split > 0 ? 4.0 : 1.0) + (slow_write > 0 ? 4.0 : 0.0);
     const double supply =
         2 * seconds(latency.high) * parts + std::max(depth / 8000.0, 0.001) + seconds(printer.margin) + 0.002;

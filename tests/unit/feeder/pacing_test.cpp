@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <chrono>
+
 namespace linefeed::feeder {
 namespace {
 
@@ -87,12 +90,52 @@ TEST(Pacing, shouldBoundTheIntervalOfALineThatHardlyMoves) {
     EXPECT_EQ(pacing.poll_interval(RecordCount{256}), milliseconds{250});
 }
 
-TEST(Pacing, shouldPollAFastLineMoreOftenThanItsBurstRate) {
+/// A line that has run at `rate` for a while, at a printer whose answers take `round_trip`.
+Pacing steady(double rate, Duration round_trip) {
     Pacing pacing{PacingSettings{}};
+    for (int answers = 0; answers < 100; ++answers) {
+        pacing.answered_after(round_trip);
+    }
     pacing.restart(start);
-    run(pacing, 4000, seconds{2}, milliseconds{5});
-    const Duration interval = pacing.poll_interval(RecordCount{256});
-    EXPECT_NEAR(static_cast<double>(std::chrono::duration_cast<microseconds>(interval).count()), 7625.0, 200.0);
+    run(pacing, rate, seconds{2}, milliseconds{5});
+    return pacing;
+}
+
+double interval_ms(const Pacing& pacing, std::uint64_t level) {
+    return std::chrono::duration<double, std::milli>(pacing.poll_interval(RecordCount{level})).count();
+}
+
+TEST(Pacing, shouldPollASixtyFourthOfTheBufferWhenAnswersAreQuick) {
+    EXPECT_NEAR(interval_ms(steady(1000, milliseconds{1}), 256), 4.0, 0.1);
+    EXPECT_NEAR(interval_ms(steady(500, milliseconds{5}), 256), 8.0, 0.1);
+    EXPECT_NEAR(interval_ms(steady(2000, milliseconds{1}), 256), 2.0, 0.1);
+    EXPECT_NEAR(interval_ms(steady(1000, milliseconds{1}), 128), 2.0, 0.1) << "what is left in the buffer counts";
+}
+
+TEST(Pacing, shouldPollWhatTheAnswersLeaveOfTheSixteenthThatMayBeMissing) {
+    EXPECT_NEAR(interval_ms(steady(1000, milliseconds{13}), 256), 3.0, 0.1);
+    EXPECT_NEAR(interval_ms(steady(1000, milliseconds{20}), 256), 1.0, 0.1) << "no more than a 256th";
+    EXPECT_NEAR(interval_ms(steady(500, milliseconds{8}), 64), 2.0, 0.1) << "nor more than once a print";
+}
+
+TEST(Pacing, shouldNotBurdenThePrinterForALineThatHardlyMoves) {
+    EXPECT_NEAR(interval_ms(steady(1, milliseconds{1}), 256), (128.0 - 3 - 1) / 8, 0.1)
+        << "it could start again at its burst rate";
+}
+
+TEST(Pacing, shouldNoticeAStartAfterAStandstillAtOnce) {
+    Pacing pacing = steady(0, milliseconds{1});
+    EXPECT_GT(interval_ms(pacing, 256), 15.0);
+    const Instant moves = start + seconds{2};
+    run(pacing, 2000, milliseconds{16}, milliseconds{8}, moves);
+    EXPECT_LT(pacing.rate(), 100.0) << "over the last second";
+    EXPECT_LT(interval_ms(pacing, 256), 4.0);
+}
+
+TEST(Pacing, shouldPollAFastLineMoreOftenThanItsBurstRate) {
+    EXPECT_NEAR(interval_ms(steady(8000, Duration{0}), 256), 1.0, 0.01) << "every 8 prints: a 32nd";
+    EXPECT_NEAR(interval_ms(steady(16000, Duration{0}), 256), 0.5, 0.01);
+    EXPECT_NEAR(interval_ms(steady(40000, Duration{0}), 256), 0.4, 0.01);
 }
 
 TEST(Pacing, shouldPollMoreOftenWhenAnswersAreSlow) {
@@ -106,9 +149,47 @@ TEST(Pacing, shouldPollMoreOftenWhenAnswersAreSlow) {
         pacing.answered_after(milliseconds{1});
     }
     EXPECT_EQ(pacing.poll_interval(RecordCount{104}), microseconds{12500});
-    pacing.answered_after(milliseconds{500});
-    EXPECT_EQ(pacing.poll_interval(RecordCount{103}), milliseconds{50})
-        << "no time is left at all: ten under way at once";
+    ASSERT_EQ(pacing.inquiries_at_most(), 32);
+    pacing.answered_after(milliseconds{640});
+    EXPECT_EQ(pacing.poll_interval(RecordCount{103}), milliseconds{20}) << "no time is left: 32 under way at once";
+}
+
+TEST(Pacing, shouldHaveManyInquiriesUnderWayWhenItIsTheWayThatTakesTheTime) {
+    Pacing pacing{PacingSettings{}};
+    EXPECT_EQ(pacing.inquiries_at_most(), 4) << "nothing is known of the printer yet";
+    for (int answers = 0; answers < 100; ++answers) {
+        pacing.answered_after(milliseconds{20});
+    }
+    EXPECT_EQ(pacing.inquiries_at_most(), Pacing::max_inquiries);
+}
+
+/// Whatever is under way waits until the printer has answered what came before.
+TEST(Pacing, shouldNotLetInquiriesQueueInAPrinterThatTakesOneAfterTheOther) {
+    Pacing pacing{PacingSettings{}};
+    constexpr Duration each = milliseconds{20};
+    pacing.answered_after(each); // the first is asked alone
+    int most = 0;
+    for (int answers = 0; answers < 500; ++answers) {
+        most = std::max(most, pacing.inquiries_at_most());
+        pacing.answered_after(each * pacing.inquiries_at_most());
+        pacing.restart(start);
+        EXPECT_GE(pacing.poll_interval(RecordCount{256}) * 2, each) << "no faster than twice what it answers";
+    }
+    EXPECT_LE(most, 5);
+    EXPECT_LE(pacing.inquiries_at_most(), 3);
+}
+
+TEST(Pacing, shouldForgiveAFewLateAnswers) {
+    Pacing pacing = steady(1000, milliseconds{5});
+    for (int answers = 0; answers < 7; ++answers) {
+        pacing.answered_after(milliseconds{100}); // this machine stood still
+    }
+    EXPECT_EQ(pacing.inquiries_at_most(), Pacing::max_inquiries);
+    pacing.answered_after(milliseconds{5});
+    for (int answers = 0; answers < 16; ++answers) {
+        pacing.answered_after(milliseconds{100});
+    }
+    EXPECT_LT(pacing.inquiries_at_most(), Pacing::max_inquiries) << "that is more than chance";
 }
 
 TEST(Pacing, shouldPollFastWhileNothingIsKnownOfTheRate) {
@@ -125,7 +206,8 @@ TEST(Pacing, shouldPollBelowItsLeastIntervalOnlyWhenTheRateDemandsIt) {
     Pacing pacing{PacingSettings{}};
     pacing.restart(start);
     run(pacing, 10000, seconds{2}, milliseconds{5});
-    EXPECT_EQ(pacing.poll_interval(RecordCount{30}), microseconds{800}) << "every 8 prints";
+    EXPECT_EQ(pacing.poll_interval(RecordCount{256}), microseconds{800}) << "every 8 prints";
+    EXPECT_EQ(pacing.poll_interval(RecordCount{30}), microseconds{400}) << "every print, but no more often";
     pacing.restart(start + seconds{10});
     pacing.printed(RecordCount{100000}, start + seconds{11});
     EXPECT_EQ(pacing.poll_interval(RecordCount{30}), microseconds{400});
@@ -140,8 +222,9 @@ TEST(Pacing, shouldCollectBlocksOnlyWhenTheBufferIsComfortable) {
     };
     EXPECT_FALSE(worth(0, 0, 256)) << "nothing to send";
     EXPECT_FALSE(worth(1, 255, 256));
-    EXPECT_FALSE(worth(15, 241, 256));
-    EXPECT_TRUE(worth(16, 240, 256)) << "a sixteenth of the depth";
+    EXPECT_TRUE(worth(2, 254, 256)) << "a 128th of the depth";
+    EXPECT_FALSE(worth(7, 1017, 1024));
+    EXPECT_TRUE(worth(8, 1016, 1024));
     EXPECT_FALSE(worth(1, 128, 256)) << "half full is comfortable";
     EXPECT_TRUE(worth(1, 127, 256)) << "at once below";
     EXPECT_TRUE(worth(1, 0, 1));
