@@ -39,11 +39,11 @@ private:
     Result<bool> settle_doubt(spool::Spool& spool, const spool::Job& job);
     bool wait_for_answer();
     Result<bool> ask_operator(spool::Spool& spool, const spool::Job& job);
-    void start(daemon::JobRun& run);
     void watch(daemon::JobRun& run, RecordRange wanted);
     [[nodiscard]] daemon::JobRunSettings run_settings() const;
 
     const PrintOptions& options_;
+    std::optional<daemon::RunThreads> threads_; ///< of print()
     SignalWatch signals_;
     ProgressView view_;
     bool interrupted_ = false;
@@ -60,7 +60,6 @@ daemon::JobRunSettings PrintCommand::run_settings() const {
         settings.session.feeder.acknowledge.push_back(code);
     }
     settings.connect_timeout = std::chrono::milliseconds{options_.connect_timeout_ms};
-    settings.real_time = options_.real_time;
     return settings;
 }
 
@@ -175,8 +174,8 @@ Result<std::optional<feeder::Outcome>> PrintCommand::settle_other_jobs(spool::Sp
         }
         view_.message("job " + std::to_string(static_cast<std::int64_t>(other)) +
                       " may have records in this printer: asking how far it came");
-        daemon::JobRun run{spool, **other_job, {}, *open, settings};
-        start(run);
+        daemon::JobRun run{*threads_, spool, **other_job, {}, *open, settings};
+        run.start();
         watch(run, {});
         run.join();
         const auto left = daemon::find_open_issue(spool, other);
@@ -276,8 +275,8 @@ Result<feeder::Outcome> PrintCommand::print_runs(spool::Spool& spool, const spoo
         if (!*open && state->next_printable(wanted).empty()) {
             return outcome;
         }
-        daemon::JobRun run{spool, job, wanted, *open, settings};
-        start(run);
+        daemon::JobRun run{*threads_, spool, job, wanted, *open, settings};
+        run.start();
         watch(run, wanted);
         run.join();
         outcome = run.outcome();
@@ -293,6 +292,12 @@ Result<feeder::Outcome> PrintCommand::print_runs(spool::Spool& spool, const spoo
 
 Result<ExitCode> PrintCommand::print(spool::Spool& spool, const spool::Job& job, RecordRange wanted,
                                      const daemon::JobRunSettings& settings) {
+    daemon::FeedThread feed{options_.real_time};
+    daemon::StoreThread store{spool};
+    threads_.emplace(daemon::RunThreads{feed, store});
+    if (const std::string granted = feed.start(); !granted.empty()) {
+        view_.message(granted);
+    }
     const auto hindrance = settle_other_jobs(spool, job, settings);
     if (!hindrance) {
         return hindrance.error();
@@ -321,12 +326,6 @@ Result<ExitCode> PrintCommand::print(spool::Spool& spool, const spool::Job& job,
     }
     show_report(*report, options_.json);
     return report->code;
-}
-
-void PrintCommand::start(daemon::JobRun& run) {
-    if (const std::string granted = run.start(); !granted.empty()) {
-        view_.message(granted);
-    }
 }
 
 void PrintCommand::watch(daemon::JobRun& run, RecordRange wanted) {

@@ -2,7 +2,6 @@
 
 #include <boost/asio/post.hpp>
 
-#include <future>
 #include <unistd.h>
 
 namespace linefeed::daemon {
@@ -11,31 +10,34 @@ namespace asio = boost::asio;
 using session::Effects;
 using session::Session;
 
-JobRun::JobRun(spool::Spool& spool, const spool::Job& job, RecordRange wanted, const std::optional<OpenIssue>& open,
-               const JobRunSettings& settings)
-    : settings_(settings)
+JobRun::JobRun(RunThreads threads, spool::Spool& spool, const spool::Job& job, RecordRange wanted,
+               const std::optional<OpenIssue>& open, const JobRunSettings& settings)
+    : threads_(threads)
+    , settings_(settings)
     , store_(StoreWork{spool, job.id, LedgerKeeper{spool, job.id, wanted, link::to_string(settings.printer), open}})
-    , session_(settings.session, make_plan(open, job.id, wanted))
-    , link_(context_, session_, *this)
-    , replies_(context_, ::dup(store_.replies_signal().descriptor())) {}
+    , session_(settings.session, make_plan(open, job.id, wanted)) {}
 
 JobRun::~JobRun() {
-    if (thread_.joinable()) {
+    if (fed_) {
         request_stop();
     }
     join();
 }
 
-std::string JobRun::start() {
-    store_.start();
+void JobRun::start() {
+    threads_.store.add(store_);
+    fed_ = true;
+    threads_.feed.let_in(*this);
+}
+
+JobRun::Edge::Edge(JobRun& run)
+    : link(run.threads_.feed.context(), run.session_, run)
+    , replies(run.threads_.feed.context(), ::dup(run.store_.replies_signal().descriptor())) {}
+
+void JobRun::on_feed_thread() {
+    edge_.emplace(*this);
     wait_for_replies();
-    std::promise<std::string> granted;
-    thread_ = std::thread{[this, &granted] {
-        granted.set_value(make_real_time(settings_.real_time));
-        link_.connect(settings_.endpoints, settings_.connect_timeout);
-        context_.run();
-    }};
-    return granted.get_future().get();
+    edge_->link.connect(settings_.endpoints, settings_.connect_timeout);
 }
 
 void JobRun::request_stop() {
@@ -44,9 +46,7 @@ void JobRun::request_stop() {
 }
 
 void JobRun::join() {
-    if (thread_.joinable()) {
-        thread_.join();
-    }
+    fed_.wait(true);
     store_.join();
     if (!store_.failure().empty()) {
         detail_ = store_.failure();
@@ -107,11 +107,19 @@ void JobRun::end(const feeder::End& end) {
     push(end);
     finished_.store(true, std::memory_order_release);
     news_.notify();
-    asio::post(context_, [this] {
+    asio::post(threads_.feed.context(), [this] {
         boost::system::error_code ignored;
-        replies_.close(ignored);
-        link_.abort();
+        edge_->replies.close(ignored);
+        edge_->link.abort();
+        // What was under way on them has been queued by that, each with its error: they go behind it.
+        asio::post(threads_.feed.context(), [this] { leave(); });
     });
+}
+
+void JobRun::leave() {
+    edge_.reset();
+    fed_ = false;
+    fed_.notify_all(); // by the address: the run may be gone already
 }
 
 void JobRun::on_progress() {
@@ -149,27 +157,29 @@ std::vector<feeder::Notice> JobRun::take_notices() {
 }
 
 void JobRun::wait_for_replies() {
-    replies_.async_wait(asio::posix::stream_descriptor::wait_read, [this](const boost::system::error_code& error) {
-        if (error) {
-            return;
-        }
-        store_.replies_signal().clear();
-        take_stop_request();
-        take_replies();
-        wait_for_replies();
-    });
+    edge_->replies.async_wait(asio::posix::stream_descriptor::wait_read,
+                              [this](const boost::system::error_code& error) {
+                                  if (error) {
+                                      return;
+                                  }
+                                  store_.replies_signal().clear();
+                                  take_stop_request();
+                                  take_replies();
+                                  wait_for_replies();
+                              });
 }
 
 void JobRun::take_stop_request() {
     if (stop_requested_.exchange(false, std::memory_order_acquire) && !finished()) {
-        link_.call([](Session& session, Instant at, Effects& effects) { session.request_stop(at, effects); });
+        edge_->link.call([](Session& session, Instant at, Effects& effects) { session.request_stop(at, effects); });
     }
 }
 
 void JobRun::take_replies() {
     StoreReply reply;
     while (!finished() && store_.pop(reply)) {
-        link_.call([&reply](Session& session, Instant at, Effects& effects) { deliver(reply, session, at, effects); });
+        edge_->link.call(
+            [&reply](Session& session, Instant at, Effects& effects) { deliver(reply, session, at, effects); });
         push_cumulative();
     }
 }

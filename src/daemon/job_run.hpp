@@ -1,22 +1,20 @@
-// One run of one job on one printer: the feed thread with its link and session, the store thread, and what people may
-// see of it.
+// One run of one job on one printer: its link and session on the feed thread, its way to the store thread, and what
+// people may see of it.
 #pragma once
 
-#include "daemon/real_time.hpp"
-#include "daemon/store.hpp"
+#include "daemon/feed_thread.hpp"
+#include "daemon/store_thread.hpp"
 #include "feeder/outcome.hpp"
 #include "link/printer_address.hpp"
 #include "link/tcp_link.hpp"
 #include "session/session.hpp"
 #include "spool/spool.hpp"
 
-#include <boost/asio/io_context.hpp>
 #include <boost/asio/posix/stream_descriptor.hpp>
 
 #include <atomic>
 #include <optional>
 #include <string>
-#include <thread>
 #include <vector>
 
 namespace linefeed::daemon {
@@ -26,7 +24,6 @@ struct JobRunSettings {
     std::vector<boost::asio::ip::tcp::endpoint> endpoints; ///< of the printer, resolved
     session::SessionSettings session;
     Duration connect_timeout = std::chrono::seconds{3};
-    RealTimeSettings real_time; ///< of the feed thread
 };
 
 /// A glance at the run, from any thread.
@@ -38,18 +35,23 @@ struct RunProgress {
     double rate_per_s = 0;
 };
 
+/// What all runs of a process share.
+struct RunThreads {
+    FeedThread& feed;
+    StoreThread& store;
+};
+
 /// Flow: construct, start(), poll progress() and take_notices(), request_stop() if wanted, until finished(); then
-/// join() and result(). The spool belongs to the run from start() to join().
-class JobRun final : private link::EffectHandler {
+/// join() and outcome(). The spool belongs to the store thread from start() to join().
+class JobRun final : private link::EffectHandler, private FeedThread::Guest {
 public:
-    JobRun(spool::Spool& spool, const spool::Job& job, RecordRange wanted, const std::optional<OpenIssue>& open,
-           const JobRunSettings& settings);
+    JobRun(RunThreads threads, spool::Spool& spool, const spool::Job& job, RecordRange wanted,
+           const std::optional<OpenIssue>& open, const JobRunSettings& settings);
     ~JobRun() override;
     JobRun(const JobRun&) = delete;
     JobRun& operator=(const JobRun&) = delete;
 
-    /// Returns what the feed thread was granted of JobRunSettings::real_time, for people; empty if nothing was wanted.
-    [[nodiscard]] std::string start();
+    void start();
     /// Stops the line and finds the truth; any thread.
     void request_stop();
     [[nodiscard]] bool finished() const { return finished_.load(std::memory_order_acquire); }
@@ -66,6 +68,7 @@ public:
     [[nodiscard]] const session::SessionStatistics& statistics() const { return session_.statistics(); }
 
 private:
+    void on_feed_thread() override;
     void on_effect(const session::Effect& effect) override;
     void on_unreachable(const std::string& reason) override;
     void on_progress() override;
@@ -75,15 +78,21 @@ private:
     void push(const StoreRequest& request);
     void push_cumulative();
     void end(const feeder::End& end);
+    void leave();
 
+    /// Lives and dies on the feed thread.
+    struct Edge {
+        explicit Edge(JobRun& run);
+        link::TcpLink link;
+        boost::asio::posix::stream_descriptor replies;
+    };
+
+    RunThreads threads_;
     JobRunSettings settings_;
     Store store_;
-    /// Of the feed thread alone, so it never locks: other threads come in through the rings and stop_requested_.
-    boost::asio::io_context context_{BOOST_ASIO_CONCURRENCY_HINT_UNSAFE};
     session::Session session_;
-    link::TcpLink link_;
-    boost::asio::posix::stream_descriptor replies_;
-    std::thread thread_;
+    std::optional<Edge> edge_;
+    std::atomic<bool> fed_{false}; ///< from start() until nothing of it is left on the feed thread
 
     std::optional<feeder::ConfirmPrinted> confirm_; ///< latest not yet handed to the store
     std::optional<feeder::AskIntent> intent_;

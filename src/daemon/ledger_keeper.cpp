@@ -171,7 +171,7 @@ bool LedgerKeeper::has_pending() const {
     return !pending_intent_.empty() || !pending_printed_.empty();
 }
 
-Result<void> LedgerKeeper::commit() {
+std::vector<LedgerEntry> LedgerKeeper::pending_rows() const {
     LINEFEED_ASSERT(run_.has_value());
     std::vector<LedgerEntry> entries;
     if (!pending_intent_.empty()) {
@@ -180,8 +180,17 @@ Result<void> LedgerKeeper::commit() {
     if (!pending_printed_.empty()) {
         entries.push_back({LedgerKind::printed, *run_, pending_printed_, mail_json(pending_evidence_)});
     }
+    return entries;
+}
+
+void LedgerKeeper::rows_written() {
     pending_intent_ = {};
     pending_printed_ = {};
+}
+
+Result<void> LedgerKeeper::commit() {
+    const std::vector<LedgerEntry> entries = pending_rows();
+    rows_written(); // also if it fails: nothing is written after that
     return entries.empty() ? Result<void>{} : spool_.append(job_, entries);
 }
 

@@ -10,6 +10,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace linefeed::daemon {
 
@@ -57,6 +58,9 @@ public:
     void intent(RecordNumber through);
     void printed(RecordNumber through, const protocol::MailStatus& evidence);
     [[nodiscard]] bool has_pending() const;
+    [[nodiscard]] std::vector<spool::LedgerEntry> pending_rows() const;
+    /// pending_rows() are durable.
+    void rows_written();
     /// Writes what is pending in one transaction, durable at return.
     [[nodiscard]] Result<void> commit();
 

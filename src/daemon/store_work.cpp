@@ -126,6 +126,15 @@ void StoreWork::commit() {
         fail(committed.error());
         return;
     }
+    report_durable();
+}
+
+void StoreWork::rows_written() {
+    keeper_.rows_written();
+    report_durable();
+}
+
+void StoreWork::report_durable() {
     if (keeper_.intent_through() > durable_reported_) {
         durable_reported_ = keeper_.intent_through();
         replies_.emplace_back(Durable{durable_reported_});

@@ -57,6 +57,9 @@ public:
     [[nodiscard]] bool intent_waits() const;
     /// Writes them in one transaction.
     void commit();
+    /// The same in two steps, for a transaction with other runs: these rows are to be written, and then rows_written().
+    [[nodiscard]] spool::JobRows pending_rows() const { return {job_, keeper_.pending_rows()}; }
+    void rows_written();
     [[nodiscard]] bool wants_read_ahead() const;
     /// Reads one page.
     void read_ahead();
@@ -77,6 +80,7 @@ private:
     void grant(const feeder::BeginRun& begin);
     void adopt(const feeder::AdoptRun& adopted);
     void end(const feeder::End& end);
+    void report_durable();
     void fail(Failure failure);
 
     spool::Spool& spool_;

@@ -50,6 +50,12 @@ struct LedgerEntry {
     friend bool operator==(const LedgerEntry&, const LedgerEntry&) = default;
 };
 
+/// Rows to append to the ledger of one job.
+struct JobRows {
+    JobId job{};
+    std::vector<LedgerEntry> entries;
+};
+
 /// One row as stored.
 struct LedgerRow {
     std::int64_t sequence = 0; ///< 1, 2, 3 … over the whole spool

@@ -96,6 +96,8 @@ public:
     /// Appends rows in one transaction, durable at return. A row that contradicts the ledger (LedgerState::apply) is an
     /// internal failure and nothing is written.
     [[nodiscard]] Result<void> append(JobId job, std::span<const LedgerEntry> entries);
+    /// As append(), for several jobs in one transaction. Precondition: no job comes twice.
+    [[nodiscard]] Result<void> append_together(std::span<const JobRows> jobs);
     /// The state of the job's records; costs the same however long the ledger is.
     [[nodiscard]] Result<LedgerState> ledger_state(JobId job);
     /// The jobs with issued records whose fate is not known, oldest first.

@@ -142,6 +142,11 @@ Result<void> Spool::State::append_rows(JobId job, std::span<const LedgerEntry> e
     if (auto writable = check_writable(); !writable) {
         return writable;
     }
+    const auto checked = check_rows(job, entries);
+    return checked ? append_checked({&*checked, 1}) : checked.error();
+}
+
+Result<Spool::State::CheckedRows> Spool::State::check_rows(JobId job, std::span<const LedgerEntry> entries) {
     const auto ledger = job_ledger(job);
     if (!ledger) {
         return ledger.error();
@@ -164,15 +169,23 @@ Result<void> Spool::State::append_rows(JobId job, std::span<const LedgerEntry> e
             return contradiction(job, entry, "it contradicts what is known of these records");
         }
     }
-    if (auto written = write_rows(job, entries, (*ledger)->state, after); !written) {
+    return CheckedRows{job, entries, (*ledger)->state, std::move(after)};
+}
+
+Result<void> Spool::State::append_checked(std::span<const CheckedRows> jobs) {
+    if (auto written = write_rows(jobs); !written) {
         return fatal(written.error());
     }
-    (*ledger)->state = std::move(after);
+    for (const CheckedRows& rows : jobs) {
+        // What is not cached (any more) is read again when it is needed.
+        if (const auto cached = ledgers.find(static_cast<std::int64_t>(rows.job)); cached != ledgers.end()) {
+            cached->second.state = rows.after;
+        }
+    }
     return {};
 }
 
-Result<void> Spool::State::write_rows(JobId job, std::span<const LedgerEntry> entries, const LedgerState& before,
-                                      const LedgerState& after) {
+Result<void> Spool::State::write_rows(std::span<const CheckedRows> jobs) {
     auto transaction = Transaction::begin(*database);
     if (!transaction) {
         return transaction.error();
@@ -187,25 +200,29 @@ Result<void> Spool::State::write_rows(JobId job, std::span<const LedgerEntry> en
         if (!statement) {
             return statement.error();
         }
-        for (const LedgerEntry& entry : entries) {
-            hash = ledger_hash(hash, ++sequence, job, entry, time_ns);
-            const std::string hash_bytes = bytes_of(hash);
-            statement->bind(1, sequence)
-                .bind(2, static_cast<std::int64_t>(job))
-                .bind(3, to_string(entry.kind))
-                .bind(4, static_cast<std::int64_t>(entry.run))
-                .bind(5, std::int64_t{entry.range.first().value()})
-                .bind(6, static_cast<std::int64_t>(entry.range.count().value()))
-                .bind(7, entry.evidence)
-                .bind(8, time_ns)
-                .bind_blob(9, hash_bytes);
-            if (auto done = statement->run(); !done) {
-                return done;
+        for (const CheckedRows& rows : jobs) {
+            for (const LedgerEntry& entry : rows.entries) {
+                hash = ledger_hash(hash, ++sequence, rows.job, entry, time_ns);
+                const std::string hash_bytes = bytes_of(hash);
+                statement->bind(1, sequence)
+                    .bind(2, static_cast<std::int64_t>(rows.job))
+                    .bind(3, to_string(entry.kind))
+                    .bind(4, static_cast<std::int64_t>(entry.run))
+                    .bind(5, std::int64_t{entry.range.first().value()})
+                    .bind(6, static_cast<std::int64_t>(entry.range.count().value()))
+                    .bind(7, entry.evidence)
+                    .bind(8, time_ns)
+                    .bind_blob(9, hash_bytes);
+                if (auto done = statement->run(); !done) {
+                    return done;
+                }
             }
         }
     }
-    if (auto done = write_segments(job, before, after); !done) {
-        return done;
+    for (const CheckedRows& rows : jobs) {
+        if (auto done = write_segments(rows.job, rows.before, rows.after); !done) {
+            return done;
+        }
     }
     if (auto done = transaction->commit(); !done) {
         return done;
@@ -275,6 +292,21 @@ Result<void> Spool::append(JobId job, std::span<const LedgerEntry> entries) {
         return state_->check_writable();
     }
     return state_->append_rows(job, entries);
+}
+
+Result<void> Spool::append_together(std::span<const JobRows> jobs) {
+    if (auto writable = state_->check_writable(); !writable) {
+        return writable;
+    }
+    std::vector<State::CheckedRows> checked;
+    for (const JobRows& rows : jobs) {
+        auto one = state_->check_rows(rows.job, rows.entries);
+        if (!one) {
+            return one.error();
+        }
+        checked.push_back(*std::move(one));
+    }
+    return state_->append_checked(checked);
 }
 
 Result<std::vector<JobId>> Spool::jobs_with_open_records() {

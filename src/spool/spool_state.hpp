@@ -48,10 +48,19 @@ struct Spool::State {
     [[nodiscard]] Result<JobLedger*> job_ledger(JobId id);
     /// Whether `run` is a run of the job; remembers it.
     [[nodiscard]] Result<bool> is_run_of(JobLedger& ledger, JobId job, RunId run);
+    /// Rows of one job, checked, and the states before and after them.
+    struct CheckedRows {
+        JobId job{};
+        std::span<const LedgerEntry> entries;
+        LedgerState before;
+        LedgerState after;
+    };
     /// Checks and appends rows in one transaction. Only a run_started row may name the run of its own sequence.
     [[nodiscard]] Result<void> append_rows(JobId job, std::span<const LedgerEntry> entries);
-    [[nodiscard]] Result<void> write_rows(JobId job, std::span<const LedgerEntry> entries, const LedgerState& before,
-                                          const LedgerState& after);
+    [[nodiscard]] Result<CheckedRows> check_rows(JobId job, std::span<const LedgerEntry> entries);
+    /// In one transaction; only then are the states after them believed.
+    [[nodiscard]] Result<void> append_checked(std::span<const CheckedRows> jobs);
+    [[nodiscard]] Result<void> write_rows(std::span<const CheckedRows> jobs);
     [[nodiscard]] Result<void> write_segments(JobId job, const LedgerState& before, const LedgerState& after);
     [[nodiscard]] Result<LedgerState> read_segments(JobId job);
 };

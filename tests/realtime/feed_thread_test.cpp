@@ -44,6 +44,8 @@ protected:
         line.printer.print_duration = std::chrono::microseconds{500};
         simulator_.emplace(line);
         address_ = "tcp://" + simulator_->open().value();
+        store_.emplace(*spool_);
+        static_cast<void>(feed_.start());
         line_ = std::thread{[this] {
             exempt_this_thread();
             simulator_->run().value();
@@ -53,6 +55,7 @@ protected:
         watch(false);
         ::kill(::getpid(), SIGTERM); // the simulator serves until then
         line_.join();
+        store_.reset();
         spool_.reset();
         std::filesystem::remove_all(directory_);
     }
@@ -85,6 +88,8 @@ protected:
 
     std::filesystem::path directory_;
     std::optional<spool::Spool> spool_;
+    daemon::FeedThread feed_{{}};
+    std::optional<daemon::StoreThread> store_;
     spool::Job job_;
     std::optional<simulator::Simulator> simulator_;
     std::string address_;
@@ -99,8 +104,8 @@ void wait_for(daemon::JobRun& run, std::uint32_t printed) {
 }
 
 TEST_F(FeedThreadTest, shouldNeitherAllocateNorLockNorTouchAFileInTheSteadyState) {
-    daemon::JobRun run{*spool_, job_, job_.records, std::nullopt, settings()};
-    static_cast<void>(run.start());
+    daemon::JobRun run{{feed_, *store_}, *spool_, job_, job_.records, std::nullopt, settings()};
+    run.start();
     wait_for(run, warm_through);
     ASSERT_FALSE(run.finished());
 
@@ -133,8 +138,8 @@ TEST_F(FeedThreadTest, shouldNeitherAllocateNorLockNorTouchAFileInTheSteadyState
 }
 
 TEST_F(FeedThreadTest, shouldTakeAStopFromAnotherThread) {
-    daemon::JobRun run{*spool_, job_, job_.records, std::nullopt, settings()};
-    static_cast<void>(run.start());
+    daemon::JobRun run{{feed_, *store_}, *spool_, job_, job_.records, std::nullopt, settings()};
+    run.start();
     wait_for(run, 500);
     std::thread{[&run] { run.request_stop(); }}.join();
     run.join();

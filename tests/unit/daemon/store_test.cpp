@@ -1,5 +1,5 @@
 // The store thread: requests and replies through the rings, and what becomes of it when memory runs out.
-#include "daemon/store.hpp"
+#include "daemon/store_thread.hpp"
 #include "spool_job.hpp"
 
 #include <chrono>
@@ -16,13 +16,16 @@ protected:
         store_.emplace(
             StoreWork{*spool_, job_,
                       LedgerKeeper{*spool_, job_, closed(1, records_of_job), "tcp://10.0.0.5:3000", std::nullopt}});
-        store_->start();
+        thread_.emplace(*spool_);
+        thread_->add(*store_);
+    }
+    void stop() {
+        out_of_memory_ = false;
+        store_.reset(); // joins: every test has ended the run
+        thread_.reset();
     }
     void TearDown() override {
-        if (store_) {
-            out_of_memory_ = false;
-            store_.reset(); // joins: every test has ended the run
-        }
+        stop();
         SpoolJobTest::TearDown();
     }
     /// The next reply of this kind; what comes before it is counted as failure only.
@@ -53,14 +56,14 @@ protected:
     }
     /// Opened again as after a restart.
     void expect_durable(const Ranges& printed, const Ranges& open) {
-        out_of_memory_ = false;
-        store_.reset();
+        stop();
         open_spool({});
         EXPECT_TRUE(spool_->verify_ledger());
         EXPECT_EQ(in_state(RecordState::printed), printed);
         EXPECT_EQ(in_state(RecordState::open), open);
     }
 
+    std::optional<StoreThread> thread_;
     std::optional<Store> store_;
     int failures_ = 0;
 };

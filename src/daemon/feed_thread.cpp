@@ -1,0 +1,60 @@
+#include "daemon/feed_thread.hpp"
+
+#include "base/assert.hpp"
+
+#include <future>
+#include <unistd.h>
+
+namespace linefeed::daemon {
+
+FeedThread::FeedThread(const RealTimeSettings& settings)
+    : settings_(settings)
+    , door_(context_, ::dup(door_signal_.descriptor())) {}
+
+FeedThread::~FeedThread() {
+    if (thread_.joinable()) {
+        stopping_.store(true, std::memory_order_release);
+        door_signal_.notify();
+        thread_.join();
+    }
+}
+
+std::string FeedThread::start() {
+    LINEFEED_ASSERT(!thread_.joinable());
+    wait_for_guests();
+    std::promise<std::string> granted;
+    auto told = granted.get_future();
+    thread_ = std::thread{[this, &granted] {
+        granted.set_value(make_real_time(settings_));
+        context_.run();
+    }};
+    return told.get();
+}
+
+void FeedThread::let_in(Guest& guest) {
+    {
+        const std::lock_guard lock{outside_};
+        LINEFEED_ASSERT(waiting_.push(&guest));
+    }
+    door_signal_.notify();
+}
+
+void FeedThread::wait_for_guests() {
+    door_.async_wait(boost::asio::posix::stream_descriptor::wait_read, [this](const boost::system::error_code& error) {
+        if (error) {
+            return;
+        }
+        door_signal_.clear();
+        if (stopping_.load(std::memory_order_acquire)) {
+            context_.stop();
+            return;
+        }
+        Guest* guest = nullptr;
+        while (waiting_.pop(guest)) {
+            guest->on_feed_thread();
+        }
+        wait_for_guests();
+    });
+}
+
+} // namespace linefeed::daemon

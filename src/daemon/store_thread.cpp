@@ -1,0 +1,168 @@
+#include "daemon/store_thread.hpp"
+
+#include <algorithm>
+#include <future>
+#include <iterator>
+#include <new>
+#include <utility>
+
+namespace linefeed::daemon {
+
+namespace {
+constexpr int idle_wait_ms = 1000;
+/// Confirmations are gathered for this long, well below the 50 ms in which they must be durable.
+constexpr auto gather = std::chrono::milliseconds{10};
+constexpr auto checkpoint_interval = std::chrono::seconds{5};
+} // namespace
+
+StoreThread::StoreThread(spool::Spool& spool)
+    : spool_(spool)
+    , thread_([this] { run(); }) {}
+
+StoreThread::~StoreThread() {
+    {
+        const std::lock_guard lock{outside_};
+        stopping_ = true;
+    }
+    signal_.notify();
+    thread_.join();
+}
+
+void StoreThread::add(Store& store) {
+    store.begin(signal_);
+    {
+        const std::lock_guard lock{outside_};
+        arriving_.push_back(&store);
+    }
+    signal_.notify();
+}
+
+void StoreThread::call(const std::function<void(spool::Spool&)>& what) {
+    std::packaged_task<void()> task{[&] { what(spool_); }};
+    auto done = task.get_future();
+    {
+        const std::lock_guard lock{outside_};
+        calls_.emplace_back([&task] { task(); });
+    }
+    signal_.notify();
+    done.get();
+}
+
+void StoreThread::let_in() {
+    std::vector<std::function<void()>> calls;
+    {
+        const std::lock_guard lock{outside_};
+        stores_.insert(stores_.end(), arriving_.begin(), arriving_.end());
+        arriving_.clear();
+        writers_.reserve(stores_.size());
+        calls.swap(calls_);
+    }
+    for (const auto& call : calls) {
+        call();
+    }
+}
+
+bool StoreThread::take_requests() {
+    bool taken = false;
+    for (Store* store : stores_) {
+        taken = store->take_requests() || taken;
+    }
+    return taken;
+}
+
+bool StoreThread::any(bool (StoreWork::*wants)() const) const {
+    return std::ranges::any_of(stores_, [wants](const Store* store) { return (store->work().*wants)(); });
+}
+
+void StoreThread::commit() {
+    writers_.clear();
+    std::ranges::copy_if(stores_, std::back_inserter(writers_),
+                         [](const Store* store) { return store->work().wants_commit(); });
+    if (writers_.size() > 1 && commit_together()) {
+        return;
+    }
+    for (Store* store : writers_) {
+        store->guarded([](StoreWork& work) { work.commit(); });
+    }
+}
+
+/// False if it did not work out: then each is written by itself, so that it is known whose rows are the reason.
+bool StoreThread::commit_together() {
+    try {
+        std::vector<spool::JobRows> rows;
+        for (const Store* store : writers_) {
+            rows.push_back(store->work().pending_rows());
+        }
+        if (!spool_.append_together(rows)) {
+            return false;
+        }
+    } catch (const std::bad_alloc&) {
+        return false;
+    }
+    for (Store* store : writers_) {
+        store->guarded([](StoreWork& work) { work.rows_written(); });
+    }
+    return true;
+}
+
+/// One page for one run: then it is looked again whether something is more urgent.
+void StoreThread::read_ahead() {
+    for (std::size_t looked = 0; looked < stores_.size(); ++looked) {
+        Store& store = *stores_[next_reader_++ % stores_.size()];
+        if (store.work().wants_read_ahead()) {
+            store.guarded([](StoreWork& work) { work.read_ahead(); });
+            return;
+        }
+    }
+}
+
+/// By any of the runs: a failure is the next commit's as well.
+void StoreThread::checkpoint() {
+    if (!stores_.empty()) {
+        stores_.front()->guarded([](StoreWork& work) { work.checkpoint(); });
+    }
+}
+
+void StoreThread::let_go_of_ended() {
+    std::erase_if(stores_, [](Store* store) {
+        const bool ended = store->work().ended();
+        if (ended) {
+            store->end(); // it may be gone from here on
+        }
+        return ended;
+    });
+}
+
+void StoreThread::run() {
+    Clock::time_point last_commit = Clock::now();
+    Clock::time_point last_checkpoint = last_commit;
+    while (true) {
+        let_in();
+        {
+            const std::lock_guard lock{outside_};
+            if (stopping_ && stores_.empty() && arriving_.empty()) {
+                return;
+            }
+        }
+        const bool taken = take_requests();
+        const Clock::time_point now = Clock::now();
+        const bool wants_commit = any(&StoreWork::wants_commit);
+        if (any(&StoreWork::intent_waits) || (wants_commit && now - last_commit >= gather)) {
+            commit();
+            last_commit = Clock::now();
+        } else if (any(&StoreWork::wants_read_ahead)) {
+            read_ahead();
+        } else if (now - last_checkpoint >= checkpoint_interval) {
+            checkpoint();
+            last_checkpoint = now;
+        } else if (!taken) {
+            signal_.wait(wants_commit ? static_cast<int>(gather.count()) : idle_wait_ms);
+        }
+        for (Store* store : stores_) {
+            store->send_replies();
+        }
+        let_go_of_ended();
+    }
+}
+
+} // namespace linefeed::daemon

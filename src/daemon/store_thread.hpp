@@ -1,0 +1,58 @@
+// The store thread: the only writer of the spool (design, section 3). It serves the runs of all printers: what they
+// want written is gathered into one transaction, so that many printers cost hardly more syncs than one.
+#pragma once
+
+#include "daemon/event_signal.hpp"
+#include "daemon/store.hpp"
+#include "spool/spool.hpp"
+
+#include <chrono>
+#include <functional>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace linefeed::daemon {
+
+/// Flow: add() a Store for each run; the last reference to a Store goes with its End request. While any run is under
+/// way, others use the spool through call() only. All runs must have ended before it is destroyed.
+class StoreThread {
+public:
+    explicit StoreThread(spool::Spool& spool);
+    ~StoreThread();
+    StoreThread(const StoreThread&) = delete;
+    StoreThread& operator=(const StoreThread&) = delete;
+
+    /// Serves `store` until its End request; Store::join() waits for that.
+    void add(Store& store);
+    /// Does something with the spool between two steps of the thread, and waits until it is done. What it throws is
+    /// thrown here.
+    void call(const std::function<void(spool::Spool&)>& what);
+
+private:
+    using Clock = std::chrono::steady_clock;
+
+    void run();
+    void let_in();
+    [[nodiscard]] bool take_requests();
+    [[nodiscard]] bool any(bool (StoreWork::*wants)() const) const;
+    void commit();
+    [[nodiscard]] bool commit_together();
+    void read_ahead();
+    void checkpoint();
+    void let_go_of_ended();
+
+    spool::Spool& spool_;
+    EventSignal signal_;
+    std::vector<Store*> stores_;
+    std::vector<Store*> writers_; ///< those that want a commit; has room for all
+    std::size_t next_reader_ = 0; ///< whose turn it is to have a page read
+
+    std::mutex outside_; ///< guards what follows; the feed thread never takes it
+    std::vector<Store*> arriving_;
+    std::vector<std::function<void()>> calls_;
+    bool stopping_ = false;
+    std::thread thread_;
+};
+
+} // namespace linefeed::daemon
