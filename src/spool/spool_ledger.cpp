@@ -282,11 +282,22 @@ Result<RunId> Spool::begin_run(JobId job, RecordRange range, const std::string& 
     return run;
 }
 
-Result<void> Spool::append(JobId job, std::span<const LedgerEntry> entries) {
+namespace {
+
+Result<void> check_starts_no_run(JobId job, std::span<const LedgerEntry> entries) {
     for (const LedgerEntry& entry : entries) {
         if (entry.kind == LedgerKind::run_started) {
             return contradiction(job, entry, "begin_run() starts runs");
         }
+    }
+    return {};
+}
+
+} // namespace
+
+Result<void> Spool::append(JobId job, std::span<const LedgerEntry> entries) {
+    if (auto right = check_starts_no_run(job, entries); !right) {
+        return right;
     }
     if (entries.empty()) {
         return state_->check_writable();
@@ -300,6 +311,9 @@ Result<void> Spool::append_together(std::span<const JobRows> jobs) {
     }
     std::vector<State::CheckedRows> checked;
     for (const JobRows& rows : jobs) {
+        if (auto right = check_starts_no_run(rows.job, rows.entries); !right) {
+            return right;
+        }
         auto one = state_->check_rows(rows.job, rows.entries);
         if (!one) {
             return one.error();

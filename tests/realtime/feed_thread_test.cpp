@@ -3,7 +3,7 @@
 // loopback on the simulator, and every such call of its feed thread counts (watched_calls.hpp).
 #include "daemon/job_run.hpp"
 #include "link/printer_address.hpp"
-#include "protocol/mail_record.hpp"
+#include "numbered_job.hpp"
 #include "simulator/simulator.hpp"
 #include "watched_calls.hpp"
 
@@ -13,9 +13,9 @@
 #include <chrono>
 #include <csignal>
 #include <fcntl.h>
-#include <filesystem>
 #include <iostream>
 #include <mutex>
+#include <optional>
 #include <sys/socket.h>
 #include <thread>
 #include <unistd.h>
@@ -24,7 +24,6 @@ namespace linefeed::realtime {
 namespace {
 
 constexpr std::uint32_t records = 8000;
-constexpr std::uint32_t records_of_page = 256;
 constexpr double print_gos_per_s = 1000;
 constexpr std::uint32_t warm_through = 1500; ///< several pages, intents and a `?RS`
 constexpr std::uint32_t steady_through = 6500;
@@ -32,19 +31,14 @@ constexpr std::uint32_t steady_through = 6500;
 class FeedThreadTest : public testing::Test {
 protected:
     void SetUp() override {
-        std::string name = std::filesystem::temp_directory_path() / "linefeed-feed-thread-XXXXXX";
-        ASSERT_NE(::mkdtemp(name.data()), nullptr);
-        directory_ = name;
-        spool_.emplace(spool::Spool::open(directory_ / "spool.db", {[] { return std::int64_t{1}; }, {}}).value());
-        import_job();
-
+        job_ = directory_.import_job(records);
         simulator::SimulatorSettings line;
         line.port = "0";
         line.conveyor.rate = print_gos_per_s;
         line.printer.print_duration = std::chrono::microseconds{500};
         simulator_.emplace(line);
         address_ = "tcp://" + simulator_->open().value();
-        store_.emplace(*spool_);
+        store_.emplace(directory_.spool());
         static_cast<void>(feed_.start());
         line_ = std::thread{[this] {
             exempt_this_thread();
@@ -56,25 +50,6 @@ protected:
         ::kill(::getpid(), SIGTERM); // the simulator serves until then
         line_.join();
         store_.reset();
-        spool_.reset();
-        std::filesystem::remove_all(directory_);
-    }
-
-    void import_job() {
-        const protocol::MailRecordEncoder encoder{{protocol::Charset::latin1}, protocol::EscapeMode::backslash};
-        spool::JobSpec spec;
-        spec.source.path = "/data/serials.csv";
-        auto import = spool_->begin_import(spec).value();
-        for (std::uint32_t first = 1; first <= records; first += records_of_page) {
-            RecordPage page{RecordNumber{first}, {}, {}};
-            for (std::uint32_t number = first; number < std::min(records + 1, first + records_of_page); ++number) {
-                const std::string text = "SN-" + std::to_string(number);
-                encoder.append(page.frames, RecordNumber{number}, std::array{std::string_view{text}}).value();
-                page.ends.push_back(static_cast<std::uint32_t>(page.frames.size()));
-            }
-            import.add(page).value();
-        }
-        job_ = import.commit({}).value();
     }
 
     [[nodiscard]] daemon::JobRunSettings settings() const {
@@ -86,8 +61,7 @@ protected:
         return settings;
     }
 
-    std::filesystem::path directory_;
-    std::optional<spool::Spool> spool_;
+    SpoolDirectory directory_;
     daemon::FeedThread feed_{{}};
     std::optional<daemon::StoreThread> store_;
     spool::Job job_;
@@ -104,7 +78,7 @@ void wait_for(daemon::JobRun& run, std::uint32_t printed) {
 }
 
 TEST_F(FeedThreadTest, shouldNeitherAllocateNorLockNorTouchAFileInTheSteadyState) {
-    daemon::JobRun run{{feed_, *store_}, *spool_, job_, job_.records, std::nullopt, settings()};
+    daemon::JobRun run{{feed_, *store_}, directory_.spool(), job_, job_.records, std::nullopt, settings()};
     run.start();
     wait_for(run, warm_through);
     ASSERT_FALSE(run.finished());
@@ -138,7 +112,7 @@ TEST_F(FeedThreadTest, shouldNeitherAllocateNorLockNorTouchAFileInTheSteadyState
 }
 
 TEST_F(FeedThreadTest, shouldTakeAStopFromAnotherThread) {
-    daemon::JobRun run{{feed_, *store_}, *spool_, job_, job_.records, std::nullopt, settings()};
+    daemon::JobRun run{{feed_, *store_}, directory_.spool(), job_, job_.records, std::nullopt, settings()};
     run.start();
     wait_for(run, 500);
     std::thread{[&run] { run.request_stop(); }}.join();

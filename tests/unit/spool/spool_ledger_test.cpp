@@ -118,6 +118,35 @@ TEST_F(SpoolLedgerTest, shouldWriteNothingIfOneRowContradicts) {
     EXPECT_TRUE(append(*spool, job.id, {{LedgerKind::intent, run, range(1, 9), ""}})); // and it goes on
 }
 
+TEST_F(SpoolLedgerTest, shouldAppendToSeveralJobsAtOnce) {
+    const Job other = make_job(*spool, 50);
+    const RunId run = begin_run();
+    const RunId other_run = spool->begin_run(other.id, other.records, "").value();
+    const std::vector<JobRows> rows{{job.id, {{LedgerKind::intent, run, range(1, 20), ""}}},
+                                    {other.id, {{LedgerKind::intent, other_run, range(1, 30), ""}}}};
+    ASSERT_TRUE(spool->append_together(rows));
+    EXPECT_EQ(spool->ledger_state(job.id).value().ranges(RecordState::open), std::vector{range(1, 20)});
+    reopen();
+    EXPECT_EQ(spool->ledger_state(other.id).value().ranges(RecordState::open), std::vector{range(1, 30)});
+    EXPECT_EQ(spool->verify_ledger().value(), 4);
+}
+
+TEST_F(SpoolLedgerTest, shouldWriteNothingForAnyJobIfARowOfOneContradicts) {
+    const Job other = make_job(*spool, 50);
+    const RunId run = begin_run();
+    const RunId other_run = spool->begin_run(other.id, other.records, "").value();
+    const LedgerEntry good{LedgerKind::intent, run, range(1, 20), ""};
+    for (const LedgerEntry& bad : {LedgerEntry{LedgerKind::printed, other_run, range(1, 30), ""},
+                                   LedgerEntry{LedgerKind::run_started, other_run, range(1, 50), ""}}) {
+        const auto done = spool->append_together(std::vector<JobRows>{{job.id, {good}}, {other.id, {bad}}});
+        ASSERT_FALSE(done);
+        EXPECT_EQ(done.error().kind, FailureKind::internal);
+        EXPECT_TRUE(spool->ledger_state(job.id).value().ranges(RecordState::open).empty());
+    }
+    EXPECT_EQ(spool->verify_ledger().value(), 2);
+    EXPECT_TRUE(append(*spool, job.id, {good})) << "the spool goes on";
+}
+
 TEST_F(SpoolLedgerTest, shouldRefuseRecordsThatTheJobDoesNotHave) {
     const RunId run = begin_run();
     for (const RecordRange records : {range(0, 1), range(100, 101), range(200, 201)}) {
