@@ -110,6 +110,7 @@ run_tests "unit and architecture" -L unit --parallel "$cores"
 run_tests "fuzz corpora" -L fuzz --parallel "$cores"
 run_tests "simulation" -L simulation -E mutations --parallel "$cores"
 run_tests "integration" -L integration
+stage "bench-slice" benchmarks/run.py --quick
 stage "format" tests/lint.sh format
 [[ $long -eq 0 ]] || stage "tidy" tests/lint.sh tidy
 stage "coverage" tests/coverage.sh

@@ -177,13 +177,18 @@ int run(const Options& options) {
     pacing.poll_min = std::min(pacing.poll_min, poll_interval);
     pacing.poll_max = poll_interval;
     pacing.burst_rate = block / std::chrono::duration<double>(2 * answer_period).count();
-    settings.real_time.priority = options.priority;
-    settings.real_time.processor = processor_of_hosts();
-    daemon::JobRun job_run{print_job.spool(), print_job.job(), print_job.job().records, std::nullopt, settings};
-    const std::string granted = job_run.start();
+    daemon::RealTimeSettings real_time;
+    real_time.priority = options.priority;
+    real_time.processor = processor_of_hosts();
+    daemon::FeedThread feed{real_time};
+    daemon::StoreThread store{print_job.spool()};
+    const std::string granted = feed.start();
+    daemon::JobRun job_run{{feed, store}, print_job.spool(), print_job.job(), print_job.job().records, std::nullopt,
+                           settings};
+    job_run.start();
     linefeed.printer.accept();
     {
-        BareHost bare_host{bare.printer.port(), pages, depth, poll_interval, settings.real_time};
+        BareHost bare_host{bare.printer.port(), pages, depth, poll_interval, real_time};
         bare.printer.accept();
         stay_on_first_processor();
         feed_in_turn(linefeed, bare, options.samples, answer_period);
