@@ -124,13 +124,14 @@ TEST(Session, shouldForgetTheInquiriesBeforeAnAnsweredStatus) {
         host.wake();
         asked += host.sent();
     }
-    EXPECT_NE(asked.find("^0?SM"), std::string::npos);
+    const auto under_way = std::ranges::count(asked, 'M');
+    EXPECT_GT(under_way, 1);
     host.receive(printing);
-    for (int polls = 0; polls < feeder::Pacing::max_inquiries; ++polls) {
+    for (auto polls = under_way; polls > 0; --polls) {
         host.wake(); // all of them may be under way again
     }
     asked = host.sent();
-    EXPECT_GE(std::ranges::count(asked, 'M'), feeder::Pacing::max_inquiries - 1);
+    EXPECT_GE(std::ranges::count(asked, 'M'), under_way - 1);
     EXPECT_FALSE(host.ended);
 }
 
