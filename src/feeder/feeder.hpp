@@ -166,7 +166,9 @@ private:
     void print_mail(Instant now, Actions& out);
     [[nodiscard]] bool follow(Instant now, Actions& out);
     void poll_on(Instant now);
-    void watch_left_over();
+    [[nodiscard]] bool report_fits();
+    void watch_for_missing();
+    void doubt_number();
     [[nodiscard]] bool take_report(Instant now, Actions& out);
     void confirm_reported(Actions& out);
     void ask_for_proof(Instant now, Actions& out);
@@ -211,7 +213,13 @@ private:
 
     int mail_reads_ = 0; ///< `=SM` answers in this phase
     int identity_answers_missing_ = 0;
-    std::array<Instant, 64> mail_asked_at_{}; ///< ring of the instants of the inquiries under way
+    struct MailInquiry {
+        Instant at{};
+        RecordNumber sent_through{}; ///< before it
+    };
+    std::array<MailInquiry, 64> mail_asked_{}; ///< ring of the inquiries under way
+    RecordNumber sent_before_inquiry_;         ///< the one that was answered last
+    RecordNumber surely_received_;             ///< sent before the inquiry before: an answer may be so old
     std::size_t mail_oldest_ = 0;
     int mail_outstanding_ = 0;
     int counters_outstanding_ = 0;
@@ -231,10 +239,11 @@ private:
     RecordNumber taken_sent_through_;
     RecordNumber number_before_count_; ///< reported before `?CC` was asked
 
-    std::int32_t acknowledged_ = 0;  ///< the error that `!EQ` was sent for
-    RecordNumber left_over_;         ///< last printed number that stood in the printer before this run
-    bool left_over_passed_ = false;  ///< the printer has reported another number since
-    bool other_number_seen_ = false; ///< in the last answer
+    std::int32_t acknowledged_ = 0; ///< the error that `!EQ` was sent for
+    RecordNumber left_over_;        ///< last printed number that stood in the printer before this run
+    bool left_over_passed_ = false; ///< the printer has reported another number since
+    /// So many more records than were sent are in the printer by the last answer; absent: it fitted.
+    std::optional<std::uint64_t> odd_excess_;
     std::optional<std::uint32_t> total_before_;
     StopPoint stop_point_ = StopPoint::unset;
     int stop_point_tries_ = 0;

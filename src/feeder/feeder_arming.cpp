@@ -203,7 +203,7 @@ void Feeder::verify(Instant now, Actions& out) {
     }
     if (!as_expected) {
         out.push_back(Notice{NoticeCode::entries_differ, {}});
-        counter_proof_.doubt(); // a stop, or a damaged line, may have cost a part of the fill
+        doubt_number(); // a stop, or a damaged line, may have cost a part of the fill
     }
     enter(Phase::starting, now, Duration::max());
     go_due_ = now + settings_.fill_lead;

@@ -38,7 +38,9 @@ Evidence Feeder::evidence() const {
             .end_message = is_error(status_.error, protocol::error_code::last_record_printed) && at_the_end &&
                            stop_would_show() && refill_.all_sent() && !restarted_,
             .uninterrupted = !memory_lost_,
-            .restarted = restarted_};
+            .restarted = restarted_,
+            .restart_unseen = counter_proof_.doubted(),
+            .fed_by_another = cause_ == OutcomeCode::impossible_report};
 }
 
 /// The printer stands and has been asked. Final when nothing of the run can be in its FIFO.

@@ -53,6 +53,7 @@ bool Feeder::follow(Instant now, Actions& out) {
     if (!take_report(now, out)) {
         return false;
     }
+    watch_for_missing();
     pacing_.printed(refill_.printed_through() - refill_.range().first().previous(), now);
     if (phase_ == Phase::printing) {
         insist_on_stop_point(out);
@@ -68,23 +69,31 @@ void Feeder::poll_on(Instant now) {
     mail_due_ = std::max(now, std::min(mail_due_, now + pacing_.poll_interval(refill_.level()))) + least;
 }
 
-/// A number from before the run that could be one of it is gone only when two answers in a row say so: a serial line
-/// may lose a digit.
-void Feeder::watch_left_over() {
-    const bool other = mail_.last_printed != left_over_;
-    const RecordRange range = refill_.range();
-    const bool could_be_ours = range.first() <= left_over_ && left_over_ <= range.last();
-    left_over_passed_ = left_over_passed_ || (other && (other_number_seen_ || !could_be_ours));
-    other_number_seen_ = other;
+/// The printer cannot have more in its FIFO behind the reported number than was sent, and the number does not go back.
+/// If it seems so, a serial line has lost a byte of the answer; or it is true, and the next answer says the same.
+bool Feeder::report_fits() {
+    const std::uint64_t waiting = mail_.entries == 0 ? 0 : mail_.entries + std::uint64_t{1};
+    const std::uint64_t held = mail_.last_printed.value() + waiting;
+    const std::uint64_t sent = refill_.sent_through().value() + (marker_sent_ ? std::uint64_t{1} : 0);
+    const std::uint64_t excess = held - std::min(held, sent);
+    const bool odd = excess > 0 || mail_.last_printed < refill_.printed_through();
+    const bool fits = !odd || odd_excess_ == excess;
+    odd_excess_ = odd ? std::optional{excess} : std::nullopt;
+    return fits;
 }
 
 /// Takes the printed number from `mail_`. False if it cannot be right: then the line is being stopped.
 bool Feeder::take_report(Instant now, Actions& out) {
     const bool none_yet = refill_.printed_through() < refill_.range().first();
-    watch_left_over();
-    if (!left_over_passed_ || (none_yet && mail_.last_printed == RecordNumber{})) {
+    const bool left_over = !left_over_passed_ && mail_.last_printed == left_over_;
+    if (left_over || (none_yet && mail_.last_printed == RecordNumber{})) {
+        odd_excess_.reset();
         return true; // the number was there before this run
     }
+    if (!report_fits()) {
+        return true;
+    }
+    left_over_passed_ = true;
     const bool behind_last = marker_sent_ && mail_.last_printed == refill_.range().last().next();
     const RecordNumber printed = behind_last ? refill_.range().last() : mail_.last_printed;
     if (!refill_.printed(printed)) {
@@ -94,7 +103,7 @@ bool Feeder::take_report(Instant now, Actions& out) {
     }
     const bool finished = mail_.last_print_finished || behind_last;
     if (pacing_.leaps(refill_.printed_through() - refill_.range().first().previous(), now)) {
-        counter_proof_.doubt(); // another client may have flushed the FIFO: no stop point shows that
+        doubt_number(); // another client may have flushed the FIFO: no stop point shows that
     }
     reported_through_ = finished ? printed : std::max(reported_through_, printed.previous());
     confirm_reported(out);
@@ -105,12 +114,25 @@ bool Feeder::take_report(Instant now, Actions& out) {
 /// counter has to.
 void Feeder::confirm_reported(Actions& out) {
     if (!stop_would_show()) {
-        counter_proof_.doubt();
+        doubt_number();
     }
     const bool proven = counter_proof_.reported(prints_through(mail_.last_printed));
     if (proven || !counter_proof_.doubted() || !total_before_) {
         confirm(reported_through_, out);
     }
+}
+
+/// Fewer records are in the printer than it surely received: a serial line has lost some, or another client has flushed
+/// the FIFO.
+void Feeder::watch_for_missing() {
+    const std::uint64_t held = refill_.printed_through().value() + mail_.entries + std::uint64_t{1};
+    if (held < surely_received_.value()) {
+        doubt_number();
+    }
+}
+
+void Feeder::doubt_number() {
+    counter_proof_.doubt(prints_through(refill_.sent_through()));
 }
 
 void Feeder::ask_for_proof(Instant now, Actions& out) {
@@ -143,7 +165,8 @@ void Feeder::print_counters(Instant now, Actions& out) {
     if (facts_.total_prints && total_before_) {
         prints = *facts_.total_prints - *total_before_;
     }
-    switch (counter_proof_.counted(prints, prints_through(reported_through_), stop_would_show(), now)) {
+    const std::uint64_t sent = prints_through(refill_.sent_through()) + (marker_sent_ ? 1 : 0);
+    switch (counter_proof_.counted(prints, prints_through(reported_through_), sent, stop_would_show(), now)) {
     case CounterProof::Result::consistent:
         return;
     case CounterProof::Result::no_counter:

@@ -20,7 +20,8 @@ void Feeder::enter(Phase phase, Instant now, Duration timeout) {
 
 void Feeder::ask(Parameter what, Instant now, Actions& out) {
     if (what == Parameter::SM) {
-        mail_asked_at_[(mail_oldest_ + static_cast<std::size_t>(mail_outstanding_)) % mail_asked_at_.size()] = now;
+        mail_asked_[(mail_oldest_ + static_cast<std::size_t>(mail_outstanding_)) % mail_asked_.size()] = {
+            now, refill_.sent_through()};
         ++mail_outstanding_;
         mail_due_ = now + pacing_.poll_interval(refill_.level());
     }
@@ -38,13 +39,15 @@ void Feeder::mail_answered(Instant now) {
     if (mail_outstanding_ == 0) {
         return; // nobody asked
     }
-    pacing_.answered_after(now - mail_asked_at_[mail_oldest_]);
+    pacing_.answered_after(now - mail_asked_[mail_oldest_].at);
     forget_oldest_mail();
 }
 
 void Feeder::forget_oldest_mail() {
     if (mail_outstanding_ > 0) {
-        mail_oldest_ = (mail_oldest_ + 1) % mail_asked_at_.size();
+        surely_received_ = sent_before_inquiry_;
+        sent_before_inquiry_ = mail_asked_[mail_oldest_].sent_through;
+        mail_oldest_ = (mail_oldest_ + 1) % mail_asked_.size();
         --mail_outstanding_;
     }
 }

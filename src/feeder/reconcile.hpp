@@ -58,6 +58,10 @@ struct Evidence {
     /// The printer was stopped and started again while records were on their way to it: it may have thrown some away
     /// and gone on behind them. Its number counts only if the total print counter agrees.
     bool restarted = false;
+    /// No stop point stood all the time, so such a restart may have gone unseen.
+    bool restart_unseen = false;
+    /// It has reported a number that was never sent: somebody else feeds it, so no number is surely ours.
+    bool fed_by_another = false;
 
     friend bool operator==(const Evidence&, const Evidence&) = default;
 };

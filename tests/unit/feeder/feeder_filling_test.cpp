@@ -171,7 +171,7 @@ TEST(FeederFilling, shouldAskTheCounterWhenEntriesAreMissingAndNoStopPointStands
     story.rs(State::printing);
     story.sm(2, 77, 110); // kept from now on
     story.take();
-    story.sm(1, 103, 110);
+    story.sm(0, 103, 110);
     EXPECT_NE(story.take().find("?CC; ?SM; ?SM"), std::string::npos);
     EXPECT_EQ(story.feeder.refill().printed_through(), RecordNumber{103});
 }
