@@ -195,6 +195,7 @@ Result<void> LedgerKeeper::commit() {
 }
 
 Result<void> LedgerKeeper::settle(const feeder::Settle& settle) {
+    printed(settle.confirmed_through, settle.evidence.mail);
     if (const auto committed = commit(); !committed) {
         return committed;
     }

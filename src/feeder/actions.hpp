@@ -46,6 +46,8 @@ struct Settle {
     bool earlier_run = false;
     /// Only what is surely printed is known so far; the rest stays open until the FIFO is empty.
     bool provisional = false;
+    /// Confirmed before. The store may not have been told yet: confirmations wait while it is busy, a verdict does not.
+    RecordNumber confirmed_through{};
     friend bool operator==(const Settle&, const Settle&) = default;
 };
 /// To the ledger: grant records for a new run. Answered by Feeder::on_granted.

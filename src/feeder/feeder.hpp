@@ -250,6 +250,7 @@ private:
     int stop_point_misses_ = 0;              ///< answers without the stop point since it was sent
     std::optional<Instant> suspected_since_; ///< the stop point vanished: nothing is sent before `?RS` has told why
     bool restarted_ = false;                 ///< stopped and started again at the printer, as records were on their way
+    RecordNumber broken_off_;                ///< a print that was not finished when the printer stood; 0 = none
     bool memory_lost_ = false;               ///< the reported number went back
     std::optional<Instant> all_printed_at_;
     bool marker_sent_ = false;

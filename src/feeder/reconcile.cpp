@@ -157,6 +157,41 @@ Verdict by_number(const OpenRun& run, const Evidence& evidence) {
     assertion_failed("CounterSays", __FILE__, __LINE__);
 }
 
+Verdict without_broken_off(const Verdict& verdict, RecordNumber broken_off) {
+    if (!verdict.printed.contains(broken_off)) {
+        return verdict;
+    }
+    Verdict doubtful = verdict;
+    doubtful.printed = RecordRange{verdict.printed.first(), broken_off - verdict.printed.first()};
+    doubtful.in_doubt =
+        behind(broken_off.previous(), verdict.in_doubt.empty() ? verdict.printed.last() : verdict.in_doubt.last());
+    return doubtful;
+}
+
+Verdict by_all_evidence(const OpenRun& run, const Evidence& evidence) {
+    if (run.issued_through == run.printed_through) {
+        Verdict verdict;
+        verdict.basis = Basis::nothing_issued;
+        return verdict;
+    }
+    if (is_another_printer(run, evidence.printer) || evidence.fed_by_another) {
+        return all_in_doubt(run);
+    }
+    if (evidence.end_message && compare_counter(run, evidence, run.issued_through) != CounterSays::too_few) {
+        return printed_through(run, run.issued_through, true, Basis::end_message);
+    }
+    const RecordNumber reported = evidence.mail.last_printed;
+    if (reported == RecordNumber{}) {
+        return without_number(run, evidence);
+    }
+    if (run.printed_through < run.first && reported == run.last_printed_before) {
+        return by_left_over_number(run, evidence);
+    }
+    const RecordNumber least = std::max(run.first, run.printed_through);
+    const bool within = least <= reported && reported <= run.issued_through;
+    return within || is_marker_number(run, reported) ? by_number(run, evidence) : all_in_doubt(run);
+}
+
 } // namespace
 
 bool is_another_printer(const OpenRun& run, const PrinterFacts& printer) {
@@ -190,27 +225,7 @@ std::ostream& operator<<(std::ostream& out, const Verdict& verdict) {
 Verdict reconcile(const OpenRun& run, const Evidence& evidence) {
     LINEFEED_ASSERT(run.first.value() > 0 && run.first.previous() <= run.printed_through);
     LINEFEED_ASSERT(run.printed_through <= run.issued_through);
-    if (run.issued_through == run.printed_through) {
-        Verdict verdict;
-        verdict.basis = Basis::nothing_issued;
-        return verdict;
-    }
-    if (is_another_printer(run, evidence.printer) || evidence.fed_by_another) {
-        return all_in_doubt(run);
-    }
-    if (evidence.end_message && compare_counter(run, evidence, run.issued_through) != CounterSays::too_few) {
-        return printed_through(run, run.issued_through, true, Basis::end_message);
-    }
-    const RecordNumber reported = evidence.mail.last_printed;
-    if (reported == RecordNumber{}) {
-        return without_number(run, evidence);
-    }
-    if (run.printed_through < run.first && reported == run.last_printed_before) {
-        return by_left_over_number(run, evidence);
-    }
-    const RecordNumber least = std::max(run.first, run.printed_through);
-    const bool within = least <= reported && reported <= run.issued_through;
-    return within || is_marker_number(run, reported) ? by_number(run, evidence) : all_in_doubt(run);
+    return without_broken_off(by_all_evidence(run, evidence), evidence.broken_off);
 }
 
 } // namespace linefeed::feeder

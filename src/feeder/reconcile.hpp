@@ -62,6 +62,8 @@ struct Evidence {
     bool restart_unseen = false;
     /// It has reported a number that was never sent: somebody else feeds it, so no number is surely ours.
     bool fed_by_another = false;
+    /// A print that had not finished when the printer stood; 0 = none. A number behind it does not make it whole.
+    RecordNumber broken_off{};
 
     friend bool operator==(const Evidence&, const Evidence&) = default;
 };

@@ -151,6 +151,22 @@ TEST_F(StoreWorkTest, shouldReadAheadFromBehindWhatATakenOverPrinterHolds) {
     EXPECT_EQ(only<PageReady>(store.take_replies()).page->range(), closed(501, 1000));
 }
 
+/// The store hangs in a write while the end of the job is printed: the verdict overtakes the confirmations.
+TEST_F(StoreWorkTest, shouldCallNothingUnusedThatTheFeederHasConfirmed) {
+    StoreWork store = work(closed(1, 500));
+    store.take(feeder::BeginRun{});
+    store.take(feeder::ConfirmPrinted{RecordNumber{130}, {}});
+    feeder::Settle settle;
+    settle.verdict.basis = feeder::Basis::nothing_issued;
+    settle.confirmed_through = RecordNumber{500};
+    store.take(settle);
+    store.take(feeder::ConfirmPrinted{RecordNumber{400}, {}});
+    store.take(feeder::End{});
+    EXPECT_EQ(store.failure(), "");
+    EXPECT_EQ(in_state(RecordState::printed), Ranges{closed(1, 500)});
+    EXPECT_TRUE(in_state(RecordState::unused).empty());
+}
+
 TEST_F(StoreWorkTest, shouldReadNothingWhenATakenOverPrinterHoldsTheLastRecord) {
     crash(closed(1, 300));
     StoreWork store = work(closed(1, 300));

@@ -142,6 +142,26 @@ TEST(FeederStopping, shouldNotTakeAWarningOfBeforeForTheCause) {
     EXPECT_NE(story.take().find("end: stopped_at_printer"), std::string::npos);
 }
 
+TEST(FeederStopping, shouldDoubtAPrintThatSomebodyBrokeOffBeforePrintingOn) {
+    Story story = reach(Phase::printing);
+    story.rs(State::ready_to_print);
+    story.rs(State::ready_to_print);
+    for (int answers = 0; answers < 4; ++answers) {
+        story.sm(0, 102, 0, false);
+        story.wait(milliseconds{20}); // it gets time to finish
+    }
+    story.take();
+    story.sm(0, 104, 0);
+    story.expect("?CC");
+    story.cc(1004);
+    EXPECT_EQ(std::get<Settle>(story.actions[0]).confirmed_through, RecordNumber{100}) << "before this verdict";
+    story.expect("settle this run so far: printed 101-101 by mail status and total print counter");
+    story.clear_fifo(104, true, 1004);
+    story.expect(
+        "settle this run: printed none, in doubt 102-104, unused none by mail status and total print counter; " +
+        ended(OutcomeCode::stopped_at_printer));
+}
+
 TEST(FeederStopping, shouldReportAnOpenCover) {
     Story story = reach(Phase::printing);
     story.rs(State::ready_to_print, 0, true);

@@ -113,6 +113,24 @@ TEST(Reconcile, shouldDoubtExactlyTheRecordWhosePrintDidNotFinish) {
         << "confirmed before";
 }
 
+/// It was stopped in the print of 112, started again, and printed on to 115.
+TEST(Reconcile, shouldDoubtAPrintThatWasBrokenOffBehindALaterNumberToo) {
+    Evidence evidence = uninterrupted(says(115, 1015));
+    evidence.broken_off = no(112);
+    EXPECT_EQ(verdict(run_with(110), evidence),
+              "printed 111-111, in doubt 112-115, unused 116-120 by mail status and total print counter");
+    EXPECT_EQ(verdict(run_with(111), evidence),
+              "printed none, in doubt 112-115, unused 116-120 by mail status and total print counter");
+    EXPECT_EQ(verdict(run_with(112), evidence),
+              "printed 113-115, in doubt none, unused 116-120 by mail status and total print counter");
+    evidence.mail.last_print_finished = false;
+    EXPECT_EQ(verdict(run_with(110), evidence),
+              "printed 111-111, in doubt 112-115, unused 116-120 by mail status and total print counter");
+    evidence.broken_off = no(115);
+    EXPECT_EQ(verdict(run_with(110), evidence),
+              "printed 111-114, in doubt 115-115, unused 116-120 by mail status and total print counter");
+}
+
 TEST(Reconcile, shouldBelieveTheNumberAloneWhenTheCounterIsMissing) {
     EXPECT_EQ(verdict(run_with(110), says(115, std::nullopt)),
               "printed 111-115, in doubt none, unused 116-120 by mail status");
