@@ -166,7 +166,12 @@ private:
     void print_mail(Instant now, Actions& out);
     [[nodiscard]] bool follow(Instant now, Actions& out);
     void poll_on(Instant now);
-    [[nodiscard]] bool report_fits();
+    enum class Report {
+        fits,
+        damaged,    ///< or it is impossible: the next answer tells
+        impossible, ///< more records than were sent
+    };
+    [[nodiscard]] Report judge_report();
     void watch_for_missing();
     void doubt_number();
     [[nodiscard]] bool take_report(Instant now, Actions& out);
@@ -244,6 +249,7 @@ private:
     bool left_over_passed_ = false; ///< the printer has reported another number since
     /// So many more records than were sent are in the printer by the last answer; absent: it fitted.
     std::optional<std::uint64_t> odd_excess_;
+    std::uint64_t excess_of_fill_ = 0; ///< 1: its firmware counts the loaded record, too
     std::optional<std::uint32_t> total_before_;
     StopPoint stop_point_ = StopPoint::unset;
     int stop_point_tries_ = 0;

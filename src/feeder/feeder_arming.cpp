@@ -201,6 +201,12 @@ void Feeder::verify(Instant now, Actions& out) {
         ask_later(Parameter::SM, now);
         return;
     }
+    const std::uint64_t excess = mail_.entries >= sent ? mail_.entries + std::uint64_t{1} - sent : 0;
+    if (excess > 1) {
+        begin_stop(OutcomeCode::impossible_report, now, out); // somebody else feeds the printer
+        return;
+    }
+    excess_of_fill_ = excess;
     if (!as_expected) {
         out.push_back(Notice{NoticeCode::entries_differ, {}});
         doubt_number(); // a stop, or a damaged line, may have cost a part of the fill

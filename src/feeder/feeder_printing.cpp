@@ -2,6 +2,7 @@
 // vanishing is the first sign of a stop: the printer forgets it together with the records in its FIFO (protocol,
 // section 5).
 #include "feeder/feeder.hpp"
+#include "feeder/mailing_error.hpp"
 
 #include <algorithm>
 
@@ -27,6 +28,10 @@ void Feeder::print_status(Instant now, Actions& out) {
     }
     if (suspected_since_) {
         stop_suspected(now, out);
+    }
+    if (phase_ == Phase::printing && is_error(status_.error, protocol::error_code::buffer_full)) {
+        begin_stop(OutcomeCode::impossible_report, now, out); // by our credit there was room
+        return;
     }
     if (phase_ != Phase::printing || status_.error.none() || status_.error.raw == error_noticed_) {
         return;
@@ -71,15 +76,18 @@ void Feeder::poll_on(Instant now) {
 
 /// The printer cannot have more in its FIFO behind the reported number than was sent, and the number does not go back.
 /// If it seems so, a serial line has lost a byte of the answer; or it is true, and the next answer says the same.
-bool Feeder::report_fits() {
+Feeder::Report Feeder::judge_report() {
     const std::uint64_t waiting = mail_.entries == 0 ? 0 : mail_.entries + std::uint64_t{1};
     const std::uint64_t held = mail_.last_printed.value() + waiting;
     const std::uint64_t sent = refill_.sent_through().value() + (marker_sent_ ? std::uint64_t{1} : 0);
     const std::uint64_t excess = held - std::min(held, sent);
     const bool odd = excess > 0 || mail_.last_printed < refill_.printed_through();
-    const bool fits = !odd || odd_excess_ == excess;
+    const bool repeated = odd_excess_ == excess;
     odd_excess_ = odd ? std::optional{excess} : std::nullopt;
-    return fits;
+    if (!odd || (repeated && excess <= excess_of_fill_)) {
+        return Report::fits;
+    }
+    return repeated ? Report::impossible : Report::damaged;
 }
 
 /// Takes the printed number from `mail_`. False if it cannot be right: then the line is being stopped.
@@ -90,8 +98,13 @@ bool Feeder::take_report(Instant now, Actions& out) {
         odd_excess_.reset();
         return true; // the number was there before this run
     }
-    if (!report_fits()) {
+    const Report report = judge_report();
+    if (report == Report::damaged) {
         return true;
+    }
+    if (report == Report::impossible) {
+        begin_stop(OutcomeCode::impossible_report, now, out); // there is a record of somebody else in the FIFO
+        return false;
     }
     left_over_passed_ = true;
     const bool behind_last = marker_sent_ && mail_.last_printed == refill_.range().last().next();

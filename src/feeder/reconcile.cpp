@@ -174,7 +174,8 @@ Verdict by_all_evidence(const OpenRun& run, const Evidence& evidence) {
         verdict.basis = Basis::nothing_issued;
         return verdict;
     }
-    if (is_another_printer(run, evidence.printer) || evidence.fed_by_another) {
+    const bool of_another = evidence.fed_by_another && prints_since(run, evidence) != 0U; // if anything is printed
+    if (is_another_printer(run, evidence.printer) || of_another) {
         return all_in_doubt(run);
     }
     if (evidence.end_message && compare_counter(run, evidence, run.issued_through) != CounterSays::too_few) {

@@ -60,7 +60,8 @@ struct Evidence {
     bool restarted = false;
     /// No stop point stood all the time, so such a restart may have gone unseen.
     bool restart_unseen = false;
-    /// It has reported a number that was never sent: somebody else feeds it, so no number is surely ours.
+    /// It has reported what was never sent, or had no room for what was: somebody else feeds it, so no number is surely
+    /// ours.
     bool fed_by_another = false;
     /// A print that had not finished when the printer stood; 0 = none. A number behind it does not make it whole.
     RecordNumber broken_off{};

@@ -147,6 +147,9 @@ std::uint64_t Faults::foreign_number() {
     const std::uint64_t newest = newest_in_printer();
     const std::uint64_t next = std::max<std::uint64_t>(newest + 1, context_.scenario.first());
     const std::uint64_t printed = line_.look().mail_status().last_printed.value();
+    if (newest > 0 && random_.chance(0.25)) {
+        return newest + 1;
+    }
     const std::uint64_t number = random_.spread(1, printed > 1 && random_.chance(0.5) ? printed - 1 : 1U << 30U);
     return (number >= printed && number <= next + near) ? next + near + 1 : number;
 }

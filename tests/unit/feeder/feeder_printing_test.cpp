@@ -93,9 +93,24 @@ TEST(FeederPrinting, shouldBelieveANumberThatDoesNotFitOnlyWhenItIsRepeated) {
     story.expect("");
     story.sm(2, 102, 110);
     story.expect("printed through 102; =MR 106-106");
-    story.sm(9, 103, 110); // somebody else feeds the printer
-    story.sm(9, 103, 110);
-    story.expect("printed through 103; =MR 107-107");
+    story.sm(3, 103, 110); // there is one more than was sent: somebody else feeds the printer
+    story.sm(3, 103, 110);
+    story.expect("!ST; ?RS");
+    story.judge(0, 103, true, 1003);
+    EXPECT_NE(story.take().find("in doubt 103-106"), std::string::npos);
+}
+
+TEST(FeederPrinting, shouldStopWhenThePrinterHasNoRoomForWhatItShouldHaveRoomFor) {
+    const std::int32_t no_room = raw_error(protocol::error_code::buffer_full, 1);
+    Story story = reach(Phase::printing);
+    story.sm(2, 101, 110);
+    story.take();
+    story.wait(milliseconds{500});
+    story.take();
+    story.rs(State::printing, no_room);
+    story.expect("!ST; ?RS");
+    story.judge(0, 103, true, 1003, no_room);
+    EXPECT_NE(story.take().find("in doubt 102-105"), std::string::npos);
 }
 
 /// `=MR 104` gets lost on a serial line: the entries show it, and the counter settles it.
