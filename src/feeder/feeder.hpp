@@ -158,6 +158,8 @@ private:
     void begin_takeover(Instant now, Actions& out);
     void takeover_step(Instant now, Actions& out);
     [[nodiscard]] bool counter_contradicts() const;
+    [[nodiscard]] std::optional<std::uint32_t> prints_of_earlier_run() const;
+    [[nodiscard]] RecordNumber surely_printed() const;
     void taken_over(RecordRange range, RecordNumber durable_through, Instant now, Actions& out);
     void halt(Instant now, Actions& out);
 
