@@ -13,6 +13,9 @@ Failure with_way_out(const Failure& failure) {
                : failure;
 }
 
+/// So many records that are left to print last longer than reading the file anew up to where it was broken off.
+constexpr RecordCount comfortable_lead{100'000};
+
 /// What has come of an import that is over, or the import that runs on.
 Result<JobSelection> selection_of(spool::Spool& spool, std::unique_ptr<daemon::RunningImport> import) {
     const auto job = spool.job(import->job());
@@ -36,9 +39,15 @@ Result<JobSelection> go_on(const PrintOptions& options, spool::Spool& spool, con
     if (!import) {
         return import.error();
     }
-    // A mended file is compared before anything is printed of it.
-    const bool mended = source != job.spec.source;
-    const auto enough = [&] { return options.while_importing && !(mended && (*import)->compares()); };
+    // A mended file is compared before anything is printed of it; and where few records are left to print, the import
+    // has to catch up first, or the line would run dry.
+    const auto state = spool.ledger_state(job.id);
+    if (!state) {
+        return state.error();
+    }
+    const RecordRange left = state->next_printable(job.records);
+    const bool compares_first = source != job.spec.source || left.count() < comfortable_lead;
+    const auto enough = [&] { return options.while_importing && !(compares_first && (*import)->compares()); };
     if (const auto done = import_on(**import, enough, on_progress); !done) {
         return with_way_out(done.error());
     }
@@ -66,7 +75,9 @@ Result<std::optional<JobSelection>> continue_unfinished(const PrintOptions& opti
         if (same && stopped) {
             return std::optional{JobSelection{job, {}, false, {}}};
         }
-        if (!same && !(same_way && stopped)) {
+        // A mended file, or perhaps a copy that was put back: its records are compared.
+        const bool comparable = same_way && (stopped || job.spec.source.size_bytes == spec.source.size_bytes);
+        if (!same && !comparable) {
             const auto printed = printed_of(spool, job);
             if (!printed) {
                 return printed.error();
@@ -100,9 +111,10 @@ Result<JobSelection> begin_running(const PrintOptions& options, spool::Spool& sp
         if (!known) {
             return known.error();
         }
-        if (const auto done = *known ? import_on(
-                                           **import, [] { return false; }, on_progress)
-                                     : Result<void>{};
+        const bool whole = *known || (*import)->refused(); // nothing is printed yet: a bad row refuses the file
+        if (const auto done = whole ? import_on(
+                                          **import, [] { return false; }, on_progress)
+                                    : Result<void>{};
             !done) {
             return done.error();
         }

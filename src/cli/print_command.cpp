@@ -140,7 +140,7 @@ Result<ExitCode> PrintCommand::report(spool::Spool& spool, feeder::Outcome told)
     if (!report) {
         return report.error();
     }
-    if (failed && failed->kind == FailureKind::input) {
+    if (failed && failed->kind != FailureKind::storage) {
         reject(*report, *failed);
     } else if (is_good() && job_.state == spool::ImportState::stopped && report->next.empty()) {
         reject(*report, bad_rows_, options_.file.string());

@@ -177,8 +177,8 @@ void show_report(const PrintReport& report, bool json) {
 }
 
 void reject(PrintReport& report, const Failure& failure) {
-    report.code = ExitCode::input_rejected;
-    report.result = "input_rejected";
+    report.code = exit_code(failure.kind);
+    report.result = report.code == ExitCode::input_rejected ? "input_rejected" : to_string(failure.kind);
     report.message = failure.message;
 }
 

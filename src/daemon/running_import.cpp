@@ -190,7 +190,7 @@ Result<void> RunningImport::write(const Pages& taken) {
         }
     }
     const bool complete = taken.end && *taken.end && !taken.refusal;
-    if (!complete) { // commit() writes as well
+    if (!complete && !finished_job_) { // commit() writes as well
         if (auto flushed = job_.flush(); !flushed) {
             return flushed;
         }
