@@ -140,6 +140,7 @@ bool RunningImport::hand_over(intake::PageMaker& pages, RecordPage page) {
             pages_.push_back(std::move(page));
         }
     }
+    rows_.store(pages.report().rows, std::memory_order_relaxed);
     idle_ = false;
     handed_over_at_ = Clock::now();
     notify();

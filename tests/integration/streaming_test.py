@@ -153,7 +153,7 @@ class Streaming(SlowSource):
 
     def test_source_slower_than_the_line(self):
         """The printer runs empty: linefeed has warned, and the same command continues, until all is printed."""
-        printer = self.simulator("--rate", RATE0)
+        printer = self.simulator("--rate", 2000)
         starts = 0
         result = None
         while starts < 8 and (result is None or result.code == 4):
