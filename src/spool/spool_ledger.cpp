@@ -148,7 +148,10 @@ Result<void> Spool::State::append_rows(JobId job, std::span<const LedgerEntry> e
         return writable;
     }
     const auto checked = check_rows(job, entries);
-    return checked ? append_checked({&*checked, 1}) : checked.error();
+    if (!checked) {
+        return checked.error();
+    }
+    return append_checked({&*checked, 1});
 }
 
 Result<Spool::State::CheckedRows> Spool::State::check_rows(JobId job, std::span<const LedgerEntry> entries) {
