@@ -115,7 +115,7 @@ void Feeder::stop_point_moved(Instant now, Actions& out) {
         restarted_ = true; // one is loaded, and the others are gone
         begin_stop(OutcomeCode::stopped_at_printer, now, out);
     } else if (!refill_.all_sent() && mail_.entries == 0) {
-        counter_proof_.doubt(); // nothing is left by which a lost FIFO could be told
+        doubt_number(); // nothing is left by which a lost FIFO could be told
     }
 }
 
