@@ -84,6 +84,7 @@ enum class NoticeCode {
     taken_over,         ///< the printer was still printing the earlier run, which goes on without a stop
     found_printing,     ///< the printer was still printing the earlier run: it is stopped to learn the truth
     nozzle_opening,     ///< waiting for the nozzle
+    supply_low,         ///< the FIFO runs empty soon, and no record is at hand
     entries_differ,     ///< the FIFO holds another number of entries than was sent
 };
 struct Notice {

@@ -94,6 +94,9 @@ public:
     // Facts from the ledger and the pages.
     /// The truth is in the ledger, and `range` may be printed; intents up to `durable_through` are durable.
     void on_granted(RecordRange range, RecordNumber durable_through, Instant now, Actions& out);
+    /// The granted range ends earlier than it seemed: `last` is the last record there is. Precondition: it is not
+    /// behind what was supplied.
+    void on_end_known(RecordNumber last, Instant now, Actions& out);
     /// No records are granted: `why` is nothing_to_print or records_in_doubt.
     void on_refused(OutcomeCode why, Actions& out);
     void on_durable(RecordNumber through, Instant now, Actions& out);
@@ -121,6 +124,13 @@ private:
         kept,      ///< seen to stand while the printer prints: from now on it vanishes only with a stop
         ignored,   ///< by this firmware
     };
+    /// The way of the stop point from behind all records that can come to the last one.
+    enum class StopMove {
+        none,
+        wanted,   ///< the end is known; the FIFO is being filled
+        draining, ///< nothing is sent until all has arrived that was
+        sent,     ///< `=CM` is on its way; nothing is sent until it is read back
+    };
 
     // feeder_time.cpp: asking and waiting, and locate_step() of feeder.cpp
     void enter(Phase phase, Instant now, Duration timeout);
@@ -145,6 +155,7 @@ private:
     void check_ready(Instant now, Actions& out);
     void check_errors(Instant now, Actions& out);
     void flushed(Instant now, Actions& out);
+    void set_stop_point(Instant now, Actions& out);
     void stop_point_answered(Instant now, Actions& out);
     void try_loading(Instant now, Actions& out);
     void verify(Instant now, Actions& out);
@@ -188,6 +199,15 @@ private:
     void insist_on_stop_point(Actions& out);
     void all_printed(Instant now, Actions& out);
     void refill_now(Actions& out);
+
+    // feeder_supply.cpp: while the end of the run is not known
+    void move_stop_point(Actions& out);
+    [[nodiscard]] bool stop_point_stands() const;
+    void await_new_answers();
+    [[nodiscard]] bool refill_waits() const;
+    void follow_stop_point(Instant now, Actions& out);
+    void stop_point_moved(Instant now, Actions& out);
+    void watch_supply(Actions& out);
 
     // feeder_stopping.cpp: from the last print or an interruption to the end
     void begin_stop(OutcomeCode cause, Instant now, Actions& out);
@@ -255,11 +275,15 @@ private:
     std::optional<std::uint32_t> total_before_;
     StopPoint stop_point_ = StopPoint::unset;
     int stop_point_tries_ = 0;
-    int stop_point_misses_ = 0;              ///< answers without the stop point since it was sent
-    std::optional<Instant> suspected_since_; ///< the stop point vanished: nothing is sent before `?RS` has told why
-    bool restarted_ = false;                 ///< stopped and started again at the printer, as records were on their way
-    RecordNumber broken_off_;                ///< a print that was not finished when the printer stood; 0 = none
-    bool memory_lost_ = false;               ///< the reported number went back
+    int stop_point_misses_ = 0; ///< answers without the stop point since it was sent
+    StopMove stop_move_ = StopMove::none;
+    std::optional<RecordNumber> old_stop_point_; ///< set before the end was known; the new one has not been read back
+    int old_answers_left_ = 0;                   ///< answers that may be from before this step of the move
+    bool supply_noticed_ = false;                ///< low, and said so
+    std::optional<Instant> suspected_since_;     ///< the stop point vanished: nothing is sent before `?RS` has told why
+    bool restarted_ = false;   ///< stopped and started again at the printer, as records were on their way
+    RecordNumber broken_off_;  ///< a print that was not finished when the printer stood; 0 = none
+    bool memory_lost_ = false; ///< the reported number went back
     std::optional<Instant> all_printed_at_;
     bool marker_sent_ = false;
     bool any_sent_ = false;

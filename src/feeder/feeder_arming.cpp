@@ -154,6 +154,10 @@ void Feeder::flushed(Instant now, Actions& out) {
         return;
     }
     left_over_ = mail_.last_printed;
+    set_stop_point(now, out);
+}
+
+void Feeder::set_stop_point(Instant now, Actions& out) {
     enter(Phase::setting_stop, now, Duration::max());
     out.push_back(SetStopAt{refill_.range().last()});
     ask(Parameter::SM, now, out);
@@ -228,7 +232,7 @@ void Feeder::start_mail(Instant now, Actions& out) {
     if (go_due_) {
         return; // asked about the fill
     }
-    if (!stop_would_show() || mail_.stop_at == refill_.range().last()) {
+    if (!stop_would_show() || stop_point_stands()) {
         static_cast<void>(follow(now, out));
     }
     poll_on(now);

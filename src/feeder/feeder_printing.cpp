@@ -61,9 +61,13 @@ bool Feeder::follow(Instant now, Actions& out) {
     watch_for_missing();
     pacing_.printed(refill_.printed_through() - refill_.range().first().previous(), now);
     if (phase_ == Phase::printing) {
-        insist_on_stop_point(out);
+        stop_move_ == StopMove::none ? insist_on_stop_point(out) : follow_stop_point(now, out);
+    }
+    if (phase_ == Phase::stopping) {
+        return false; // the FIFO was lost
     }
     refill_now(out);
+    watch_supply(out);
     ask_for_proof(now, out);
     return true;
 }
@@ -199,7 +203,7 @@ bool Feeder::stop_point_vanished(Instant now, Actions& out) {
     if (!stop_would_show()) {
         return false;
     }
-    if (mail_.stop_at == refill_.range().last()) {
+    if (stop_point_stands()) {
         stop_point_ = StopPoint::kept;
         suspected_since_.reset();
         restarted_ = false;
@@ -217,6 +221,8 @@ bool Feeder::stop_point_vanished(Instant now, Actions& out) {
 void Feeder::stop_suspected(Instant now, Actions& out) {
     if (stop_point_ == StopPoint::kept_idle) {
         stop_point_ = StopPoint::unset; // this firmware keeps it only when it is set after the start
+        stop_move_ = StopMove::none;
+        old_stop_point_.reset();
         suspected_since_.reset();
         return;
     }
@@ -252,7 +258,7 @@ void Feeder::insist_on_stop_point(Actions& out) {
 }
 
 void Feeder::refill_now(Actions& out) {
-    if (suspected_since_) {
+    if (refill_waits()) {
         return;
     }
     if (const auto intent = refill_.next_intent()) {
@@ -278,7 +284,7 @@ void Feeder::all_printed(Instant now, Actions& out) {
     if (!all_printed_at_) {
         all_printed_at_ = now;
     }
-    if (stop_point_ != StopPoint::kept || now - *all_printed_at_ > stop_patience) {
+    if (stop_point_ != StopPoint::kept || old_stop_point_ || now - *all_printed_at_ > stop_patience) {
         send_stop(now, out);
     } else if (!status_outstanding_) {
         ask(Parameter::RS, now, out);

@@ -96,6 +96,7 @@ void Feeder::taken_over(RecordRange range, RecordNumber durable_through, Instant
     doubt_number(); // behind what the ledger has adopted
     left_over_ = run.last_printed_before;
     left_over_passed_ = true;
+    supply_noticed_ = true; // the pages are on their way: no reason for a warning yet
     enter(Phase::printing, now, Duration::max());
     pacing_.restart(now, refill_.printed_through() - range.first().previous());
     out.push_back(Notice{NoticeCode::taken_over, {}});

@@ -42,6 +42,8 @@ std::string_view to_string(OutcomeCode code) {
         return "unreachable";
     case OutcomeCode::records_in_doubt:
         return "records_in_doubt";
+    case OutcomeCode::ran_dry:
+        return "ran_dry";
     case OutcomeCode::storage_failed:
         return "storage_failed";
     }
@@ -120,6 +122,8 @@ std::string describe(const Outcome& outcome) {
         return "the printer cannot be reached";
     case OutcomeCode::records_in_doubt:
         return "nobody knows whether some records were printed: an operator must decide";
+    case OutcomeCode::ran_dry:
+        return "the printer ran empty, because the records were read more slowly than the line prints them";
     case OutcomeCode::storage_failed:
         return "the print ledger could not be written: the line is stopped";
     }

@@ -85,8 +85,8 @@ TEST_F(StoreWorkTest, shouldGrantReadAheadAndConfirm) {
 }
 
 TEST_F(StoreWorkTest, shouldStopReadingAheadWhenTheSessionHoldsAllItCan) {
-    job_ = import_job(20, 10); // more pages than are lent
-    StoreWork store = work(closed(1, 20 * 10));
+    job_ = import_job(20, 300); // more pages than are lent
+    StoreWork store = work(closed(1, 20 * 300));
     store.take(feeder::BeginRun{});
     static_cast<void>(store.take_replies());
     std::vector<const RecordPage*> pages;
