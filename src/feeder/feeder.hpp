@@ -211,7 +211,11 @@ private:
 
     int mail_reads_ = 0; ///< `=SM` answers in this phase
     int identity_answers_missing_ = 0;
-    std::array<Instant, 64> mail_asked_at_{}; ///< ring of the instants of the inquiries under way
+    struct MailAsked {
+        Instant at;
+        int under_way = 0; ///< with this one
+    };
+    std::array<MailAsked, 64> mail_asked_{}; ///< ring of the inquiries under way
     std::size_t mail_oldest_ = 0;
     int mail_outstanding_ = 0;
     int counters_outstanding_ = 0;

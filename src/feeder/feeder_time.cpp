@@ -20,8 +20,8 @@ void Feeder::enter(Phase phase, Instant now, Duration timeout) {
 
 void Feeder::ask(Parameter what, Instant now, Actions& out) {
     if (what == Parameter::SM) {
-        mail_asked_at_[(mail_oldest_ + static_cast<std::size_t>(mail_outstanding_)) % mail_asked_at_.size()] = now;
-        ++mail_outstanding_;
+        const std::size_t newest = (mail_oldest_ + static_cast<std::size_t>(mail_outstanding_)) % mail_asked_.size();
+        mail_asked_[newest] = {now, ++mail_outstanding_};
         mail_due_ = now + pacing_.poll_interval(refill_.level());
     }
     if (what == Parameter::RS) {
@@ -38,13 +38,14 @@ void Feeder::mail_answered(Instant now) {
     if (mail_outstanding_ == 0) {
         return; // nobody asked
     }
-    pacing_.answered_after(now - mail_asked_at_[mail_oldest_]);
+    const MailAsked& asked = mail_asked_[mail_oldest_];
+    pacing_.answered_after(now - asked.at, asked.under_way);
     forget_oldest_mail();
 }
 
 void Feeder::forget_oldest_mail() {
     if (mail_outstanding_ > 0) {
-        mail_oldest_ = (mail_oldest_ + 1) % mail_asked_at_.size();
+        mail_oldest_ = (mail_oldest_ + 1) % mail_asked_.size();
         --mail_outstanding_;
     }
 }
