@@ -128,6 +128,7 @@ private:
     void mail_answered(Instant now);
     void forget_oldest_mail();
     [[nodiscard]] bool asks_version_again(Instant now, Actions& out);
+    void time_identity(Instant now);
     void counters_lost(Instant now, Actions& out);
     [[nodiscard]] bool waits_for_mail() const;
     [[nodiscard]] bool waits_for_status() const;
@@ -211,6 +212,9 @@ private:
 
     int mail_reads_ = 0; ///< `=SM` answers in this phase
     int identity_answers_missing_ = 0;
+    Instant identity_asked_at_{};
+    Instant identity_answered_at_{}; ///< the first of the answers
+    int identity_answers_ = 0;
     struct MailAsked {
         Instant at;
         int under_way = 0; ///< with this one

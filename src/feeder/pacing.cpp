@@ -91,6 +91,15 @@ void Pacing::answered_after(Duration round_trip, int under_way) {
     }
 }
 
+/// Whether the second had to wait for the first: a line may start at once at its full rate, which leaves no time to
+/// find out.
+void Pacing::pair_answered_after(Duration first, Duration second) {
+    constexpr Duration noise = std::chrono::milliseconds{2};
+    if (second - first > std::max(first / 2, noise)) {
+        inquiries_at_most_ = least_inquiries;
+    }
+}
+
 /// Shortly after a start the line may run at any rate.
 bool Pacing::rate_is_known() const {
     return size_ == 0 || last_at_ - restarted_at_ >= settings_.unknown_rate;

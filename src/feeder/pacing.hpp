@@ -4,8 +4,9 @@
 // What a stall of ours may last is what lies in the printer just before a refill arrives. The records printed since the
 // last answer was made are missing there: rate × (interval + round trip). That may be a sixteenth of the buffer: the
 // interval takes what the round trip leaves of it, within bounds behind which asking more often gains less than it
-// costs. Asking faster than the printer answers gains nothing at all: the questions queue, and the answers grow old on
-// the way.
+// costs. Asking faster than the printer answers gains nothing at all: the questions queue, the answers grow old on the
+// way, and the records wait behind them. Whether it is the way or the printer that takes the time shows when several
+// are under way at once.
 #pragma once
 
 #include "base/record_number.hpp"
@@ -55,6 +56,8 @@ public:
     /// An answer took this long: a refill is late by as much, so the buffer holds that much less.
     /// With it, `under_way` inquiries were under way when it was asked for.
     void answered_after(Duration round_trip, int under_way);
+    /// Two inquiries that went out together were answered after these times.
+    void pair_answered_after(Duration first, Duration second);
     /// So many inquiries may be under way. As many as one likes if it is the way that takes the time; few if the
     /// printer takes one after the other.
     [[nodiscard]] int inquiries_at_most() const { return inquiries_at_most_; }
@@ -72,7 +75,7 @@ private:
         RecordCount count;
         Instant at;
     };
-    static constexpr int first_inquiries = 10; ///< under way, before it is known how the printer takes them
+    static constexpr int first_inquiries = 16; ///< under way, while nothing speaks against it
     static constexpr int least_inquiries = 2;
     static constexpr int answers_judged = 8; ///< together: one that was late by chance says nothing
     static constexpr std::size_t samples_kept = 64;

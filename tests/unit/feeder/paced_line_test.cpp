@@ -60,6 +60,19 @@ TEST(PacedLine, shouldKeepThePrinterAsFullAsItsAnswersAllow) {
     }
 }
 
+TEST(PacedLine, shouldBeginAtOnceAtTheFullRate) {
+    const auto shortest_lead_ms = [](AnswerHabit habit, Duration answer_time, double rate) {
+        PacedLine line = line_with(habit, answer_time);
+        line.run(rate, seconds{1});
+        return line.shortest_lead_ms();
+    };
+    EXPECT_GE(shortest_lead_ms(AnswerHabit::on_the_way, milliseconds{5}, 25000), 3.0);
+    EXPECT_GE(shortest_lead_ms(AnswerHabit::on_the_way, milliseconds{20}, 9600), 3.0);
+    EXPECT_GE(shortest_lead_ms(AnswerHabit::one_by_one, milliseconds{5}, 9000), 3.0);
+    EXPECT_GE(shortest_lead_ms(AnswerHabit::one_by_one, milliseconds{20}, 3500), 3.0);
+    EXPECT_GE(shortest_lead_ms(AnswerHabit::one_per_cycle, milliseconds{20}, 3500), 3.0);
+}
+
 TEST(PacedLine, shouldAskNoMoreThanItHasUseFor) {
     for (const Case& one : cases) {
         for (const double rate : {1.0, 100.0, 1000.0, 2000.0}) {

@@ -172,7 +172,7 @@ TEST(Pacing, shouldNotPauseBehindAStall) {
 
 TEST(Pacing, shouldHaveManyInquiriesUnderWayWhenItIsTheWayThatTakesTheTime) {
     Pacing pacing{PacingSettings{}};
-    EXPECT_EQ(pacing.inquiries_at_most(), 10) << "nothing is known of the printer yet";
+    EXPECT_EQ(pacing.inquiries_at_most(), 16) << "nothing is known of the printer yet";
     answer(pacing, 100, milliseconds{20});
     EXPECT_EQ(pacing.inquiries_at_most(), Pacing::max_inquiries);
 }
@@ -182,7 +182,20 @@ TEST(Pacing, shouldNotAllowMoreInquiriesThanAreOfUse) {
     for (int answers = 0; answers < 100; ++answers) {
         pacing.answered_after(milliseconds{20}, 3); // it is not known whether the printer would take more
     }
-    EXPECT_EQ(pacing.inquiries_at_most(), 10);
+    EXPECT_EQ(pacing.inquiries_at_most(), 16);
+}
+
+TEST(Pacing, shouldBeginCarefullyWhenTheSecondOfAPairHadToWait) {
+    const auto allowed = [](Duration first, Duration second) {
+        Pacing pacing{PacingSettings{}};
+        pacing.pair_answered_after(first, second);
+        return pacing.inquiries_at_most();
+    };
+    EXPECT_EQ(allowed(milliseconds{20}, milliseconds{20}), 16);
+    EXPECT_EQ(allowed(milliseconds{20}, milliseconds{30}), 16);
+    EXPECT_EQ(allowed(milliseconds{20}, milliseconds{40}), 2);
+    EXPECT_EQ(allowed(milliseconds{1}, milliseconds{3}), 16) << "too short to tell";
+    EXPECT_EQ(allowed(milliseconds{3}, milliseconds{6}), 2);
 }
 
 /// Whatever is under way waits until the printer has answered what came before.
