@@ -53,6 +53,8 @@ def run(quick):
     checks = []
     for title, measured in runs.items():
         table += [*table_of(title, measured), ""]
+        passed_over = measured["linefeed"]["passed_over"]
+        checks.append({"check": f"{title}: no answer was read without its refill being written: {passed_over}", "ok": passed_over == 0})
         for quantile, limit in most.items():
             found = ratio(measured, "reaction_us", quantile)
             checks.append({"check": f"{title}: {quantile} at most {limit} times the bare loop's: {found:.2f}", "ok": found <= limit})

@@ -1,11 +1,11 @@
 // The hosts that linefeed is compared with, speaking to the simulated printer over loopback. Each prints records 1…N
 // and ends; misses are counted by the printer.
 //
-//   single  the known-bad host: one inquiry, one record, and again. It must miss.
-//   manual  the manual's own procedure (annex B): ?RS and ?SM every second, then as many blocks of 50 as there is room
-//   for. bare    the credit loop and nothing else: ?SM every millisecond without waiting for the answer before, each
-//   answer
-//           filled up at once from memory; no file, ledger, doubt or stop. What platform and simulator allow at most.
+// - single: the known-bad host: one inquiry, one record, and again. It must miss.
+// - manual: the manual's own procedure (annex B): ?RS and ?SM every second, then as many blocks of 50 as there is room
+//   for.
+// - bare: the credit loop and nothing else: ?SM every millisecond without waiting for the answer before, each answer
+//   filled up at once from memory; no file, ledger, doubt or stop. What platform and simulator allow at most.
 //
 // usage: bench_control_host single|manual|bare PORT RECORDS
 #include <algorithm>

@@ -77,7 +77,7 @@ void CallLog::wrote(Instant entered, Instant returned, std::size_t bytes) {
     const std::size_t index = size_.load(std::memory_order_relaxed);
     LINEFEED_ASSERT(index < calls_.size());
     bytes_ += bytes;
-    calls_[index] = {woken_, received_, entered, returned, bytes_};
+    calls_[index] = {woken_, received_, entered, returned, bytes_, reads_};
     size_.store(index + 1, std::memory_order_release);
 }
 

@@ -19,6 +19,7 @@ struct WriteCall {
     Instant entered;
     Instant returned;
     std::uint64_t bytes_through = 0; ///< written to the socket in all, this call included
+    std::uint64_t reads = 0;         ///< that brought bytes from the socket, before it
 };
 
 /// The calls of one connection. Written by the thread that uses the socket; read by any other behind size().
@@ -30,6 +31,7 @@ public:
     void received(Instant woken, Instant at) {
         woken_ = woken;
         received_ = at;
+        ++reads_;
     }
     void wrote(Instant entered, Instant returned, std::size_t bytes);
 
@@ -42,6 +44,7 @@ private:
     Instant woken_{};
     Instant received_{};
     std::uint64_t bytes_ = 0;
+    std::uint64_t reads_ = 0;
 };
 
 /// From now on connections of this process to `port` are noted in `log`, which must outlive them.

@@ -27,7 +27,7 @@ using namespace linefeed;
 using namespace linefeed::benchmarks;
 
 constexpr std::uint32_t depth = 256;
-constexpr std::uint32_t block = depth / 16; ///< the refill that the feeder finds worth sending
+constexpr std::uint32_t block = depth / 16; ///< printed between two answers: a refill that no feeder puts off
 constexpr std::uint32_t warm_up = 300;
 
 struct Options {
@@ -102,17 +102,20 @@ void feed_in_turn(Contestant& linefeed, Contestant& bare, std::uint32_t samples,
     }
 }
 
-struct Durations {
+struct Measured {
     std::vector<double> reaction_us, from_timer_us, wake_up_us, read_us, inside_us, write_us;
+    /// Refills that came with a later answer's, though their own had been read before.
+    int passed_over = 0;
 };
 
 double in_us(Duration duration) {
     return std::chrono::duration<double, std::micro>(duration).count();
 }
 
-Durations durations_of(const Contestant& one) {
-    Durations durations;
+Measured measured_of(const Contestant& one) {
+    Measured measured;
     std::size_t call = 0;
+    std::uint64_t reads_before = 0; ///< the read of the answer before
     for (std::size_t i = 0; i < one.answers.size(); ++i) {
         const Answer& answer = one.answers[i];
         const std::uint64_t bytes = one.printer.bytes_behind(answer.sent_through);
@@ -121,15 +124,17 @@ Durations durations_of(const Contestant& one) {
         }
         const WriteCall& write = one.log[call];
         if (i >= warm_up) {
-            durations.reaction_us.push_back(in_us(write.returned - answer.sent));
-            durations.from_timer_us.push_back(in_us(write.returned - answer.due));
-            durations.wake_up_us.push_back(in_us(write.woken - answer.sent));
-            durations.read_us.push_back(in_us(write.received - write.woken));
-            durations.inside_us.push_back(in_us(write.entered - write.received));
-            durations.write_us.push_back(in_us(write.returned - write.entered));
+            measured.passed_over += write.reads > reads_before + 1;
+            measured.reaction_us.push_back(in_us(write.returned - answer.sent));
+            measured.from_timer_us.push_back(in_us(write.returned - answer.due));
+            measured.wake_up_us.push_back(in_us(write.woken - answer.sent));
+            measured.read_us.push_back(in_us(write.received - write.woken));
+            measured.inside_us.push_back(in_us(write.entered - write.received));
+            measured.write_us.push_back(in_us(write.returned - write.entered));
         }
+        reads_before = write.reads;
     }
-    return durations;
+    return measured;
 }
 
 nlohmann::json quantiles(std::vector<double> values) {
@@ -140,10 +145,14 @@ nlohmann::json quantiles(std::vector<double> values) {
     return {{"p50", at(0.5)}, {"p99", at(0.99)}, {"p99.9", at(0.999)}, {"max", values.back()}};
 }
 
-nlohmann::json to_json(const Durations& durations) {
-    return {{"reaction_us", quantiles(durations.reaction_us)}, {"from_timer_us", quantiles(durations.from_timer_us)},
-            {"wake_up_us", quantiles(durations.wake_up_us)},   {"read_us", quantiles(durations.read_us)},
-            {"inside_us", quantiles(durations.inside_us)},     {"write_us", quantiles(durations.write_us)}};
+nlohmann::json to_json(const Measured& measured) {
+    return {{"reaction_us", quantiles(measured.reaction_us)},
+            {"from_timer_us", quantiles(measured.from_timer_us)},
+            {"wake_up_us", quantiles(measured.wake_up_us)},
+            {"read_us", quantiles(measured.read_us)},
+            {"inside_us", quantiles(measured.inside_us)},
+            {"write_us", quantiles(measured.write_us)},
+            {"passed_over", measured.passed_over}};
 }
 
 /// The printer on the first processor, the hosts on another: where the scheduler puts them would decide the race.
@@ -168,7 +177,7 @@ int run(const Options& options) {
     Contestant bare{records};
 
     const Duration answer_period = std::chrono::microseconds{options.period_us};
-    const Duration poll_interval = answer_period / 2; // so that neither asks while the other answers
+    const Duration poll_interval = answer_period / 2; // so that an inquiry is there when an answer is due
     daemon::JobRunSettings settings;
     settings.printer = {"127.0.0.1", linefeed.printer.port()};
     settings.endpoints = link::resolve(settings.printer).value();
@@ -183,8 +192,8 @@ int run(const Options& options) {
     daemon::FeedThread feed{real_time};
     daemon::StoreThread store{print_job.spool()};
     const std::string granted = feed.start();
-    daemon::JobRun job_run{{feed, store}, print_job.spool(), print_job.job(), print_job.job().records, std::nullopt,
-                           settings};
+    daemon::JobRun job_run{{feed, store},           print_job.spool(), print_job.job(),
+                           print_job.job().records, std::nullopt,      settings};
     job_run.start();
     linefeed.printer.accept();
     {
@@ -199,8 +208,8 @@ int run(const Options& options) {
 
     std::cout << nlohmann::json{{"samples", options.samples},
                                 {"real_time", granted},
-                                {"linefeed", to_json(durations_of(linefeed))},
-                                {"bare", to_json(durations_of(bare))}}
+                                {"linefeed", to_json(measured_of(linefeed))},
+                                {"bare", to_json(measured_of(bare))}}
                      .dump(2)
               << std::endl;
     return 0;

@@ -4,6 +4,7 @@
 #include "call_log.hpp"
 #include "protocol/messages.hpp"
 
+#include <algorithm>
 #include <arpa/inet.h>
 #include <charconv>
 #include <netinet/tcp.h>
@@ -11,6 +12,8 @@
 #include <unistd.h>
 
 namespace linefeed::benchmarks {
+
+using protocol::Parameter;
 
 namespace {
 
@@ -71,13 +74,23 @@ void ScriptedPrinter::take() {
             take_frame(std::get<protocol::Frame>(result), bytes_ - bytes.size());
         }
     }
+    if (!printing_) {
+        answer_all();
+    }
     send_answers();
+}
+
+void ScriptedPrinter::answer_all() {
+    for (const Parameter inquiry : inquiries_) {
+        answer(inquiry);
+    }
+    inquiries_.clear();
 }
 
 void ScriptedPrinter::take_frame(const protocol::Frame& frame, std::uint64_t bytes_through) {
     const std::string_view code = frame.payload.substr(0, 2);
     if (frame.group == protocol::Group::inquiry) {
-        answer(code);
+        inquiries_.push_back(protocol::parameter_from_code(code).value());
     } else if (code == "MR") {
         received_ = number_in(frame.payload.substr(2));
         bytes_behind_[received_] = bytes_through;
@@ -88,25 +101,21 @@ void ScriptedPrinter::take_frame(const protocol::Frame& frame, std::uint64_t byt
     }
 }
 
-void ScriptedPrinter::answer(std::string_view inquiry) {
-    if (inquiry == "SM") {
-        if (printing_) {
-            ++mail_asked_;
-        } else {
-            append_mail_status();
-        }
-    } else if (inquiry == "RS") {
+void ScriptedPrinter::answer(Parameter inquiry) {
+    if (inquiry == Parameter::SM) {
+        append_mail_status();
+    } else if (inquiry == Parameter::RS) {
         protocol::MachineStatus status;
         status.nozzle = protocol::NozzleState::open;
         status.machine = printing_ ? protocol::MachineState::printing : protocol::MachineState::ready_to_print;
         protocol::append_message(answers_, status);
-    } else if (inquiry == "CC") {
+    } else if (inquiry == Parameter::CC) {
         protocol::append_message(answers_, protocol::Counters{0, 0, printed_});
-    } else if (inquiry == "VS") {
+    } else if (inquiry == Parameter::VS) {
         protocol::VersionInfo version;
         version.serial_number = "104711";
         protocol::append_message(answers_, version, protocol::EscapeMode::backslash);
-    } else if (inquiry == "JL") {
+    } else if (inquiry == Parameter::JL) {
         protocol::append_message(answers_, protocol::JobName{"Testprint.job"}, protocol::EscapeMode::backslash);
     }
 }
@@ -116,11 +125,14 @@ void ScriptedPrinter::append_mail_status() {
         answers_, protocol::MailStatus{depth_, received_ - printed_, RecordNumber{printed_}, RecordNumber{stop_at_}});
 }
 
+bool ScriptedPrinter::ready() const {
+    return printing_ && std::ranges::find(inquiries_, Parameter::SM) != inquiries_.end();
+}
+
 Instant ScriptedPrinter::report(std::uint32_t records) {
     LINEFEED_ASSERT(ready());
-    --mail_asked_;
     printed_ += records;
-    append_mail_status();
+    answer_all();
     const Instant sent = steady_now();
     send_answers();
     return sent;

@@ -1,9 +1,11 @@
 // The printer of the refill benchmark: answers what a feeder asks on its way to printing, and from then on holds every
-// `=SM` back until the benchmark says how many more records are printed.
+// answer back until the benchmark says how many more records are printed. All that was asked until then is answered at
+// once, in the order of the inquiries: a host takes an answer that others have overtaken for lost.
 #pragma once
 
 #include "base/record_number.hpp"
 #include "base/time.hpp"
+#include "protocol/commands.hpp"
 #include "protocol/frame_decoder.hpp"
 
 #include <array>
@@ -28,9 +30,9 @@ public:
     /// Reads and answers what has come; never blocks.
     void take();
     /// Prints, and a `=SM` is asked for.
-    [[nodiscard]] bool ready() const { return printing_ && mail_asked_ > 0; }
+    [[nodiscard]] bool ready() const;
     [[nodiscard]] bool printing() const { return printing_; }
-    /// Answers `=SM`, `records` later; the instant just before the bytes are handed to the kernel.
+    /// Answers all that was asked, `records` later; the instant just before the bytes are handed to the kernel.
     [[nodiscard]] Instant report(std::uint32_t records);
 
     [[nodiscard]] std::uint32_t printed() const { return printed_; }
@@ -41,7 +43,8 @@ public:
 
 private:
     void take_frame(const protocol::Frame& frame, std::uint64_t bytes_through);
-    void answer(std::string_view inquiry);
+    void answer_all();
+    void answer(protocol::Parameter inquiry);
     void append_mail_status();
     void send_answers();
 
@@ -55,7 +58,7 @@ private:
     std::string answers_;
     std::uint64_t bytes_ = 0;
     bool printing_ = false;
-    int mail_asked_ = 0;
+    std::vector<protocol::Parameter> inquiries_; ///< not answered yet, oldest first
     std::uint32_t stop_at_ = 0;
     std::uint32_t printed_ = 0;
     std::uint32_t received_ = 0;

@@ -29,6 +29,7 @@ void Feeder::on_machine_status(const protocol::MachineStatus& status, Instant no
             return;
         }
         identity_answers_missing_ = 2;
+        identity_asked_at_ = now;
         ask(Parameter::VS, now, out);
         ask(Parameter::JL, now, out);
         return;
@@ -183,12 +184,23 @@ void Feeder::on_counters(const protocol::Counters& counters, Instant now, Action
 }
 
 void Feeder::on_version(const protocol::VersionInfo& version, Instant now, Actions& out) {
+    time_identity(now);
     facts_.version = version;
     if (version.serial_number.empty() && asks_version_again(now, out)) {
         return; // with a TAB less it is not in its place
     }
     if (--identity_answers_missing_ == 0) {
         identified(now, out);
+    }
+}
+
+/// The two are asked for at once.
+void Feeder::time_identity(Instant now) {
+    ++identity_answers_;
+    if (identity_answers_ == 1) {
+        identity_answered_at_ = now;
+    } else if (identity_answers_ == 2) {
+        pacing_.pair_answered_after(identity_answered_at_ - identity_asked_at_, now - identity_asked_at_);
     }
 }
 
@@ -202,6 +214,7 @@ bool Feeder::asks_version_again(Instant now, Actions& out) {
 }
 
 void Feeder::on_job_name(const protocol::JobName& job, Instant now, Actions& out) {
+    time_identity(now);
     facts_.job_name = job.path;
     if (--identity_answers_missing_ == 0) {
         identified(now, out);

@@ -138,6 +138,7 @@ private:
     void mail_answered(Instant now);
     void forget_oldest_mail();
     [[nodiscard]] bool asks_version_again(Instant now, Actions& out);
+    void time_identity(Instant now);
     void counters_lost(Instant now, Actions& out);
     [[nodiscard]] bool waits_for_mail() const;
     [[nodiscard]] bool waits_for_status() const;
@@ -240,13 +241,17 @@ private:
 
     int mail_reads_ = 0; ///< `=SM` answers in this phase
     int identity_answers_missing_ = 0;
-    struct MailInquiry {
+    Instant identity_asked_at_{};
+    Instant identity_answered_at_{}; ///< the first of the answers
+    int identity_answers_ = 0;
+    struct MailAsked {
         Instant at{};
+        int under_way = 0;           ///< with this one
         RecordNumber sent_through{}; ///< before it
     };
-    std::array<MailInquiry, 64> mail_asked_{}; ///< ring of the inquiries under way
-    RecordNumber sent_before_inquiry_;         ///< the one that was answered last
-    RecordNumber surely_received_;             ///< sent before the inquiry before: an answer may be so old
+    std::array<MailAsked, 64> mail_asked_{}; ///< ring of the inquiries under way
+    RecordNumber sent_before_inquiry_;       ///< the one that was answered last
+    RecordNumber surely_received_;           ///< sent before the inquiry before: an answer may be so old
     std::size_t mail_oldest_ = 0;
     int mail_outstanding_ = 0;
     int counters_outstanding_ = 0;

@@ -20,9 +20,8 @@ void Feeder::enter(Phase phase, Instant now, Duration timeout) {
 
 void Feeder::ask(Parameter what, Instant now, Actions& out) {
     if (what == Parameter::SM) {
-        mail_asked_[(mail_oldest_ + static_cast<std::size_t>(mail_outstanding_)) % mail_asked_.size()] = {
-            now, refill_.sent_through()};
-        ++mail_outstanding_;
+        const std::size_t newest = (mail_oldest_ + static_cast<std::size_t>(mail_outstanding_)) % mail_asked_.size();
+        mail_asked_[newest] = {now, ++mail_outstanding_, refill_.sent_through()};
         mail_due_ = now + pacing_.poll_interval(refill_.level());
     }
     if (what == Parameter::RS) {
@@ -39,7 +38,8 @@ void Feeder::mail_answered(Instant now) {
     if (mail_outstanding_ == 0) {
         return; // nobody asked
     }
-    pacing_.answered_after(now - mail_asked_[mail_oldest_].at);
+    const MailAsked& asked = mail_asked_[mail_oldest_];
+    pacing_.answered_after(now - asked.at, asked.under_way);
     forget_oldest_mail();
 }
 

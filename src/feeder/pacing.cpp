@@ -72,21 +72,31 @@ double Pacing::latest_rate() const {
     return static_cast<double>((last_count_ - newest.count).value()) / std::max(seconds, least);
 }
 
-void Pacing::answered_after(Duration round_trip) {
+void Pacing::answered_after(Duration round_trip, int under_way) {
     constexpr int memory = 16;                               // answers until a single slow one is as good as forgotten
     constexpr Duration noise = std::chrono::milliseconds{1}; // of the schedulers
     round_trip_ = std::max(round_trip, round_trip_ - round_trip_ / memory);
     shortest_round_trip_ = std::min(shortest_round_trip_, round_trip);
     shortest_of_late_ = std::min(shortest_of_late_, round_trip);
-    if (round_trip <= 2 * shortest_round_trip_ + noise) {
+    if (under_way >= inquiries_at_most_ && round_trip <= shortest_round_trip_ + shortest_round_trip_ / 4 + noise) {
         inquiries_at_most_ = std::min(inquiries_at_most_ + 1, max_inquiries);
     }
     if (++answers_since_judged_ == answers_judged) {
-        if (shortest_of_late_ > 3 * shortest_round_trip_ + 2 * noise) {
+        if (shortest_of_late_ > 2 * shortest_round_trip_ + 2 * noise) {
             inquiries_at_most_ = std::max(inquiries_at_most_ / 2, least_inquiries); // they queue
         }
         answers_since_judged_ = 0;
+        shortest_before_ = shortest_of_late_;
         shortest_of_late_ = Duration::max();
+    }
+}
+
+/// Whether the second had to wait for the first: a line may start at once at its full rate, which leaves no time to
+/// find out.
+void Pacing::pair_answered_after(Duration first, Duration second) {
+    constexpr Duration noise = std::chrono::milliseconds{2};
+    if (second - first > std::max(first / 2, noise)) {
+        inquiries_at_most_ = least_inquiries;
     }
 }
 
@@ -104,7 +114,8 @@ Duration Pacing::least_interval(RecordCount level) const {
     const Duration least = rate_is_known() ? std::clamp(std::chrono::duration_cast<Duration>(wanted),
                                                         settings_.poll_least, settings_.poll_min)
                                            : settings_.poll_least;
-    return std::max(least, round_trip_ / inquiries_at_most_);
+    const Duration typical = std::min(shortest_before_, shortest_of_late_); // a stall of ours was not the printer's
+    return typical == Duration::max() ? least : std::max(least, typical / inquiries_at_most_);
 }
 
 Duration Pacing::poll_interval(RecordCount level) const {

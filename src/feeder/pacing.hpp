@@ -4,8 +4,9 @@
 // What a stall of ours may last is what lies in the printer just before a refill arrives. The records printed since the
 // last answer was made are missing there: rate × (interval + round trip). That may be a sixteenth of the buffer: the
 // interval takes what the round trip leaves of it, within bounds behind which asking more often gains less than it
-// costs. Asking faster than the printer answers gains nothing at all: the questions queue, and the answers grow old on
-// the way.
+// costs. Asking faster than the printer answers gains nothing at all: the questions queue, the answers grow old on the
+// way, and the records wait behind them. Whether it is the way or the printer that takes the time shows when several
+// are under way at once.
 #pragma once
 
 #include "base/record_number.hpp"
@@ -53,7 +54,10 @@ public:
     /// `count` is clearly more than the line can have printed since the last answer: records may have been skipped.
     [[nodiscard]] bool leaps(RecordCount count, Instant now) const;
     /// An answer took this long: a refill is late by as much, so the buffer holds that much less.
-    void answered_after(Duration round_trip);
+    /// With it, `under_way` inquiries were under way when it was asked for.
+    void answered_after(Duration round_trip, int under_way);
+    /// Two inquiries that went out together were answered after these times.
+    void pair_answered_after(Duration first, Duration second);
     /// So many inquiries may be under way. As many as one likes if it is the way that takes the time; few if the
     /// printer takes one after the other.
     [[nodiscard]] int inquiries_at_most() const { return inquiries_at_most_; }
@@ -71,7 +75,7 @@ private:
         RecordCount count;
         Instant at;
     };
-    static constexpr int first_inquiries = 4; ///< under way, before it is known how the printer takes them
+    static constexpr int first_inquiries = 16; ///< under way, while nothing speaks against it
     static constexpr int least_inquiries = 2;
     static constexpr int answers_judged = 8; ///< together: one that was late by chance says nothing
     static constexpr std::size_t samples_kept = 64;
@@ -80,7 +84,8 @@ private:
     PacingSettings settings_;
     Duration round_trip_{0}; ///< of late; falls slowly
     Duration shortest_round_trip_{Duration::max()};
-    Duration shortest_of_late_{Duration::max()}; ///< of the last answers_judged at most
+    Duration shortest_of_late_{Duration::max()}; ///< of the answers that are judged next
+    Duration shortest_before_{Duration::max()};  ///< of those that were judged last
     int answers_since_judged_ = 0;
     int inquiries_at_most_ = first_inquiries;
     std::array<Sample, samples_kept> samples_{};

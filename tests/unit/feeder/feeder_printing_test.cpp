@@ -246,7 +246,7 @@ TEST(FeederPrinting, shouldNotPileUpInquiriesThatAreNotAnswered) {
         }
         story.actions.clear();
     }
-    EXPECT_EQ(mail, 10);
+    EXPECT_EQ(mail, 16);
     EXPECT_EQ(status, 1);
     EXPECT_EQ(story.feeder.next_wake(), std::nullopt) << "only an answer or its time-out goes on from here";
     story.sm(3, 77, 110);

@@ -90,12 +90,17 @@ TEST(Pacing, shouldBoundTheIntervalOfALineThatHardlyMoves) {
     EXPECT_EQ(pacing.poll_interval(RecordCount{256}), milliseconds{250});
 }
 
+/// So many answers in a row, each with as many inquiries under way as may be.
+void answer(Pacing& pacing, int answers, Duration round_trip) {
+    for (int i = 0; i < answers; ++i) {
+        pacing.answered_after(round_trip, pacing.inquiries_at_most());
+    }
+}
+
 /// A line that has run at `rate` for a while, at a printer whose answers take `round_trip`.
 Pacing steady(double rate, Duration round_trip) {
     Pacing pacing{PacingSettings{}};
-    for (int answers = 0; answers < 100; ++answers) {
-        pacing.answered_after(round_trip);
-    }
+    answer(pacing, 100, round_trip);
     pacing.restart(start);
     run(pacing, rate, seconds{2}, milliseconds{5});
     return pacing;
@@ -141,37 +146,68 @@ TEST(Pacing, shouldPollAFastLineMoreOftenThanItsBurstRate) {
 TEST(Pacing, shouldPollMoreOftenWhenAnswersAreSlow) {
     Pacing pacing{PacingSettings{.burst_rate = 1000.0}};
     EXPECT_EQ(pacing.poll_interval(RecordCount{103}), microseconds{12500});
-    pacing.answered_after(milliseconds{20});
+    answer(pacing, 1, milliseconds{20});
     EXPECT_EQ(pacing.poll_interval(RecordCount{103}), milliseconds{10});
-    pacing.answered_after(milliseconds{1});
+    answer(pacing, 1, milliseconds{1});
     EXPECT_LT(pacing.poll_interval(RecordCount{103}), microseconds{10200}) << "a slow answer is remembered for a while";
-    for (int answers = 0; answers < 200; ++answers) {
-        pacing.answered_after(milliseconds{1});
-    }
+    answer(pacing, 200, milliseconds{1});
     EXPECT_EQ(pacing.poll_interval(RecordCount{104}), microseconds{12500});
+}
+
+TEST(Pacing, shouldSpreadTheInquiriesOverTheTimeOfAnAnswer) {
+    Pacing pacing{PacingSettings{}};
+    answer(pacing, 100, milliseconds{640});
     ASSERT_EQ(pacing.inquiries_at_most(), 32);
-    pacing.answered_after(milliseconds{640});
-    EXPECT_EQ(pacing.poll_interval(RecordCount{103}), milliseconds{20}) << "no time is left: 32 under way at once";
+    EXPECT_EQ(pacing.poll_interval(RecordCount{103}), milliseconds{20}) << "no time is left";
+}
+
+/// An answer that this machine was late for says nothing of the printer: pausing behind it would make it worse.
+TEST(Pacing, shouldNotPauseBehindAStall) {
+    Pacing pacing = steady(1000, milliseconds{20});
+    answer(pacing, 7, milliseconds{300});
+    EXPECT_LE(interval_ms(pacing, 256), 1.0);
+    answer(pacing, 16, milliseconds{300});
+    EXPECT_GT(interval_ms(pacing, 256), 20.0) << "that is no stall any more";
 }
 
 TEST(Pacing, shouldHaveManyInquiriesUnderWayWhenItIsTheWayThatTakesTheTime) {
     Pacing pacing{PacingSettings{}};
-    EXPECT_EQ(pacing.inquiries_at_most(), 4) << "nothing is known of the printer yet";
-    for (int answers = 0; answers < 100; ++answers) {
-        pacing.answered_after(milliseconds{20});
-    }
+    EXPECT_EQ(pacing.inquiries_at_most(), 16) << "nothing is known of the printer yet";
+    answer(pacing, 100, milliseconds{20});
     EXPECT_EQ(pacing.inquiries_at_most(), Pacing::max_inquiries);
+}
+
+TEST(Pacing, shouldNotAllowMoreInquiriesThanAreOfUse) {
+    Pacing pacing{PacingSettings{}};
+    for (int answers = 0; answers < 100; ++answers) {
+        pacing.answered_after(milliseconds{20}, 3); // it is not known whether the printer would take more
+    }
+    EXPECT_EQ(pacing.inquiries_at_most(), 16);
+}
+
+TEST(Pacing, shouldBeginCarefullyWhenTheSecondOfAPairHadToWait) {
+    const auto allowed = [](Duration first, Duration second) {
+        Pacing pacing{PacingSettings{}};
+        pacing.pair_answered_after(first, second);
+        return pacing.inquiries_at_most();
+    };
+    EXPECT_EQ(allowed(milliseconds{20}, milliseconds{20}), 16);
+    EXPECT_EQ(allowed(milliseconds{20}, milliseconds{30}), 16);
+    EXPECT_EQ(allowed(milliseconds{20}, milliseconds{40}), 2);
+    EXPECT_EQ(allowed(milliseconds{1}, milliseconds{3}), 16) << "too short to tell";
+    EXPECT_EQ(allowed(milliseconds{3}, milliseconds{6}), 2);
 }
 
 /// Whatever is under way waits until the printer has answered what came before.
 TEST(Pacing, shouldNotLetInquiriesQueueInAPrinterThatTakesOneAfterTheOther) {
     Pacing pacing{PacingSettings{}};
     constexpr Duration each = milliseconds{20};
-    pacing.answered_after(each); // the first is asked alone
+    answer(pacing, 1, each);       // the first is asked alone
+    answer(pacing, 23, each * 10); // until it is clear what kind of printer this is
     int most = 0;
     for (int answers = 0; answers < 500; ++answers) {
         most = std::max(most, pacing.inquiries_at_most());
-        pacing.answered_after(each * pacing.inquiries_at_most());
+        answer(pacing, 1, each * pacing.inquiries_at_most());
         pacing.restart(start);
         EXPECT_GE(pacing.poll_interval(RecordCount{256}) * 2, each) << "no faster than twice what it answers";
     }
@@ -181,14 +217,10 @@ TEST(Pacing, shouldNotLetInquiriesQueueInAPrinterThatTakesOneAfterTheOther) {
 
 TEST(Pacing, shouldForgiveAFewLateAnswers) {
     Pacing pacing = steady(1000, milliseconds{5});
-    for (int answers = 0; answers < 7; ++answers) {
-        pacing.answered_after(milliseconds{100}); // this machine stood still
-    }
+    answer(pacing, 7, milliseconds{100}); // this machine stood still
     EXPECT_EQ(pacing.inquiries_at_most(), Pacing::max_inquiries);
-    pacing.answered_after(milliseconds{5});
-    for (int answers = 0; answers < 16; ++answers) {
-        pacing.answered_after(milliseconds{100});
-    }
+    answer(pacing, 1, milliseconds{5});
+    answer(pacing, 16, milliseconds{100});
     EXPECT_LT(pacing.inquiries_at_most(), Pacing::max_inquiries) << "that is more than chance";
 }
 

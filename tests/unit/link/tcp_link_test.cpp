@@ -146,6 +146,28 @@ TEST_F(TcpLinkTest, shouldRefillThePrinterBeforeAnybodyElseIsTold) {
     EXPECT_EQ(received_, depth + block);
 }
 
+/// None of them waits for the next answer or for a timer, however they come.
+TEST_F(TcpLinkTest, shouldRefillForAllAnswersThatComeTogether) {
+    connect();
+    while (!printing_ || mail_asked_ < 2 || received_ < depth) {
+        ASSERT_FALSE(ended_);
+        step();
+        answer();
+    }
+    std::string text;
+    for (int answers = 0; answers < 2; ++answers) {
+        printed_ += block;
+        protocol::append_message(text, mail());
+    }
+    printer_.write_some(boost::asio::buffer(text));
+    for (int steps = 0; steps < 100 && received_ < depth + 2 * block; ++steps) {
+        step();
+        answer();
+    }
+    EXPECT_EQ(received_, depth + 2 * block);
+    EXPECT_FALSE(ended_);
+}
+
 TEST_F(TcpLinkTest, shouldEndTheRunWhenThePrinterCloses) {
     connect();
     while (read().empty()) {
