@@ -179,12 +179,15 @@ CLI::App& add_ledger(CLI::App& app, LedgerOptions& options, RawLedgerOptions& ra
     CLI::App& ledger =
         *app.add_subcommand("ledger", "Show what is known about the records of a job, and on whose word");
     ledger.add_option("JOB", options.job, "Number of the job, see linefeed jobs")->required();
-    ledger.add_option("--records", raw.records, "One line for each of these records: N or N-M");
-    ledger.add_flag("--verify", options.verify, "Check the hash chain of the ledger");
+    CLI::Option* const records =
+        ledger.add_option("--records", raw.records, "One line for each of these records: N or N-M");
+    CLI::Option* const verify = ledger.add_flag("--verify", options.verify, "Check the hash chain of the ledger");
+    verify->excludes(records);
     ledger
         .add_option("--export", options.export_format,
                     "Every issued record with fields, state, time, run and evidence: csv or json (lines)")
-        ->check(CLI::IsMember({"csv", "json"}));
+        ->check(CLI::IsMember({"csv", "json"}))
+        ->excludes(verify);
     ledger.add_option("--spool", options.spool, "Database of jobs and the print ledger")->capture_default_str();
     add_output(ledger, raw.output);
     return ledger;

@@ -1,5 +1,7 @@
 #include "feeder/outcome.hpp"
 
+#include "feeder/mailing_error.hpp"
+
 namespace linefeed::feeder {
 
 std::string_view to_string(OutcomeCode code) {
@@ -75,6 +77,16 @@ std::string not_ready(protocol::MachineState machine) {
     assertion_failed("MachineState", __FILE__, __LINE__);
 }
 
+/// What linefeed knows of an error that comes from mailing; empty = nothing.
+std::string cause_of(const protocol::PrinterError& error) {
+    namespace codes = protocol::error_code;
+    if (is_error(error, codes::number_wrong) || is_error(error, codes::number_not_consecutive)) {
+        return ": a record was lost on the line, or another program has sent one; if it comes before the first print, "
+               "this printer wants a new sequence to begin with number 0, which linefeed does not do";
+    }
+    return {};
+}
+
 } // namespace
 
 std::string describe(const Outcome& outcome) {
@@ -88,7 +100,7 @@ std::string describe(const Outcome& outcome) {
     case OutcomeCode::stopped_at_printer:
         return "printing was stopped at the printer";
     case OutcomeCode::printer_error:
-        return "the printer reports error " + protocol::describe(outcome.error);
+        return "the printer reports error " + protocol::describe(outcome.error) + cause_of(outcome.error);
     case OutcomeCode::not_ready:
         return not_ready(outcome.machine);
     case OutcomeCode::cover_open:

@@ -120,6 +120,14 @@ TEST(Outcome, shouldHaveANameAndWordsForEveryCode) {
     }
 }
 
+TEST(Outcome, shouldNameTheCauseOfABreakInTheNumbers) {
+    for (const std::uint32_t code : {1018U, 1019U, 5043U}) {
+        Outcome outcome{.code = OutcomeCode::printer_error};
+        outcome.error.raw = static_cast<std::int32_t>(code);
+        EXPECT_EQ(describe(outcome).find("a record was lost on the line") != std::string::npos, code != 5043) << code;
+    }
+}
+
 TEST(Outcome, shouldSayWhatToDoInEveryStateThatDoesNotAllowAStart) {
     std::set<std::string> words;
     for (const auto state :
