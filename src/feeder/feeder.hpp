@@ -286,9 +286,10 @@ private:
     int old_answers_left_ = 0;                   ///< answers that may be from before this step of the move
     bool supply_noticed_ = false;                ///< low, and said so
     std::optional<Instant> suspected_since_;     ///< the stop point vanished: nothing is sent before `?RS` has told why
-    bool restarted_ = false;   ///< stopped and started again at the printer, as records were on their way
-    RecordNumber broken_off_;  ///< a print that was not finished when the printer stood; 0 = none
-    bool memory_lost_ = false; ///< the reported number went back
+    bool restarted_ = false;      ///< stopped and started again at the printer, as records were on their way
+    bool fed_by_another_ = false; ///< by what was reported while it printed
+    RecordNumber broken_off_;     ///< a print that was not finished when the printer stood; 0 = none
+    bool memory_lost_ = false;    ///< the reported number went back
     std::optional<Instant> all_printed_at_;
     bool marker_sent_ = false;
     bool any_sent_ = false;

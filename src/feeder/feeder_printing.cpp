@@ -30,6 +30,7 @@ void Feeder::print_status(Instant now, Actions& out) {
         stop_suspected(now, out);
     }
     if (phase_ == Phase::printing && is_error(status_.error, protocol::error_code::buffer_full)) {
+        fed_by_another_ = true;
         begin_stop(OutcomeCode::impossible_report, now, out); // by our credit there was room
         return;
     }
@@ -107,6 +108,7 @@ bool Feeder::take_report(Instant now, Actions& out) {
         return true;
     }
     if (report == Report::impossible) {
+        fed_by_another_ = true;
         begin_stop(OutcomeCode::impossible_report, now, out); // there is a record of somebody else in the FIFO
         return false;
     }
@@ -115,6 +117,7 @@ bool Feeder::take_report(Instant now, Actions& out) {
     const RecordNumber printed = behind_last ? refill_.range().last() : mail_.last_printed;
     if (!refill_.printed(printed)) {
         memory_lost_ = printed < refill_.printed_through();
+        fed_by_another_ = !memory_lost_ || printed != RecordNumber{};
         begin_stop(memory_lost_ ? OutcomeCode::printer_restarted : OutcomeCode::impossible_report, now, out);
         return false;
     }
