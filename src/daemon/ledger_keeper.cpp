@@ -232,6 +232,9 @@ Result<void> LedgerKeeper::settle(const feeder::Settle& settle) {
     if (const auto committed = commit(); !committed) {
         return committed;
     }
+    if (!settle.verdict.printed.empty()) {
+        printed_through_ = settle.verdict.printed.last();
+    }
     return append_verdict(job_, *run_, settle);
 }
 

@@ -167,6 +167,26 @@ TEST_F(StoreWorkTest, shouldCallNothingUnusedThatTheFeederHasConfirmed) {
     EXPECT_TRUE(in_state(RecordState::unused).empty());
 }
 
+TEST_F(StoreWorkTest, shouldTakeTheFinalVerdictBehindTheProvisionalOne) {
+    StoreWork store = work(closed(1, 500));
+    store.take(feeder::BeginRun{});
+    store.take(feeder::ConfirmPrinted{RecordNumber{130}, {}});
+    feeder::Settle first_look;
+    first_look.verdict.printed = closed(131, 140);
+    first_look.provisional = true;
+    first_look.confirmed_through = RecordNumber{130};
+    store.take(first_look);
+    feeder::Settle final_look;
+    final_look.verdict.in_doubt = closed(141, 141);
+    final_look.confirmed_through = RecordNumber{140};
+    store.take(final_look);
+    store.take(feeder::End{});
+    EXPECT_EQ(store.failure(), "");
+    EXPECT_EQ(in_state(RecordState::printed), Ranges{closed(1, 140)});
+    EXPECT_EQ(in_state(RecordState::in_doubt), Ranges{closed(141, 141)});
+    EXPECT_EQ(in_state(RecordState::unused), Ranges{closed(142, 500)});
+}
+
 TEST_F(StoreWorkTest, shouldReadNothingWhenATakenOverPrinterHoldsTheLastRecord) {
     crash(closed(1, 300));
     StoreWork store = work(closed(1, 300));
