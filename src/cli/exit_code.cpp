@@ -49,6 +49,7 @@ ExitCode exit_code(const feeder::Outcome& outcome) {
     case OutcomeCode::did_not_stop:
     case OutcomeCode::impossible_report:
     case OutcomeCode::printer_restarted:
+    case OutcomeCode::ran_dry:
         return ExitCode::stopped;
     case OutcomeCode::storage_failed:
         return outcome.issued ? ExitCode::stopped : ExitCode::other;

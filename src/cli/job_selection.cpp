@@ -1,172 +1,138 @@
 #include "cli/job_selection.hpp"
 
-#include <nlohmann/json.hpp>
-
-#include <algorithm>
+#include "cli/earlier_jobs.hpp"
 
 namespace linefeed::cli {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-/// Every option that changes the records, in a fixed form.
-std::string layout_of(const PrintOptions& options) {
-    Json json{{"columns", options.columns}, {"encodings", options.encodings}, {"profile", options.profile.name}};
-    if (options.table) {
-        json["table"] = *options.table;
-    }
-    if (options.query) {
-        json["query"] = *options.query;
-    }
-    if (options.delimiter) {
-        json["delimiter"] = std::string(1, *options.delimiter);
-    }
-    json["header"] = options.header;
-    json["skip_bad"] = options.skip_bad;
-    json["mirrored"] = options.properties.mirrored;
-    if (options.properties.orientation) {
-        json["orientation"] = static_cast<int>(*options.properties.orientation);
-    }
-    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+Failure with_way_out(const Failure& failure) {
+    return failure.kind == FailureKind::input
+               ? Failure{failure.kind, failure.message + ": restore the file to go on, or print it as a new job with "
+                                                         "--new-job"}
+               : failure;
 }
 
-/// One charset for each column, from "latin1" (all) and "COLUMN=unicode-hex" (one).
-Result<std::vector<protocol::Charset>> charsets_for(const std::vector<std::string>& encodings,
-                                                    const std::vector<std::string>& columns) {
-    std::vector<protocol::Charset> charsets(columns.size(), protocol::Charset::latin1);
-    for (const std::string& encoding : encodings) {
-        const std::size_t equals = encoding.rfind('=');
-        const auto charset =
-            protocol::charset_from_name(equals == std::string::npos ? encoding : encoding.substr(equals + 1));
-        if (!charset) {
-            return Failure{FailureKind::usage,
-                           "--encoding " + encoding +
-                               ": expected latin1, windows-1252 or unicode-hex, or COLUMN=one of them"};
-        }
-        if (equals == std::string::npos) {
-            std::fill(charsets.begin(), charsets.end(), *charset);
-            continue;
-        }
-        const auto column = std::find(columns.begin(), columns.end(), encoding.substr(0, equals));
-        if (column == columns.end()) {
-            return Failure{FailureKind::usage,
-                           "--encoding " + encoding + ": no column \"" + encoding.substr(0, equals) + "\" is printed"};
-        }
-        charsets[static_cast<std::size_t>(column - columns.begin())] = *charset;
+/// So many records that are left to print last longer than reading the file anew up to where it was broken off.
+constexpr RecordCount comfortable_lead{100'000};
+
+/// What has come of an import that is over, or the import that runs on.
+Result<JobSelection> selection_of(spool::Spool& spool, std::unique_ptr<daemon::RunningImport> import) {
+    const auto job = spool.job(import->job());
+    if (!job || !*job) {
+        return job ? Failure{FailureKind::internal, "the imported job is gone"} : job.error();
     }
-    return charsets;
+    JobSelection selection{**job, {}, true, {}};
+    if (!import->over()) {
+        selection.running = std::move(import);
+    } else {
+        selection.report = import->report();
+        selection.refused = import->refused();
+    }
+    return selection;
 }
 
-Result<JobSelection> import(const PrintOptions& options, spool::Spool& spool, const spool::JobSpec& spec,
-                            const ImportProgress& on_progress) {
-    auto source = intake::open_source(
-        options.file, {options.columns, options.delimiter, options.header, options.table, options.query});
-    if (!source) {
-        return source.error();
+/// Goes on with a job whose import was broken off or stopped while it was printed.
+Result<JobSelection> go_on(const PrintOptions& options, spool::Spool& spool, const spool::Job& job,
+                           const spool::SourceFingerprint& source, const ImportProgress& on_progress) {
+    auto import = go_on_with_import(options, spool, job, source);
+    if (!import) {
+        return import.error();
     }
-    const auto charsets = charsets_for(options.encodings, (*source)->column_names());
-    if (!charsets) {
-        return charsets.error();
-    }
-    intake::ImportOptions import_options;
-    import_options.charsets = *charsets;
-    import_options.escapes = options.profile.escapes;
-    import_options.properties = options.properties;
-    import_options.skip_bad = options.skip_bad;
-    import_options.on_progress = on_progress;
-    auto outcome = intake::import_source(**source, spool, spec, import_options);
-    if (!outcome) {
-        return outcome.error();
-    }
-    return JobSelection{std::move(outcome->job), std::move(outcome->report), true};
-}
-
-/// The first records of `grown` are exactly those of `old`.
-Result<bool> begins_with(spool::Spool& spool, const spool::Job& grown, const spool::Job& old) {
-    if (grown.frame_bytes < old.frame_bytes || grown.records.first() != old.records.first()) {
-        return false;
-    }
-    for (RecordNumber number = old.records.first(); old.records.contains(number);) {
-        const auto a = spool.read_page(old.id, number);
-        const auto b = spool.read_page(grown.id, number);
-        if (!a || !b) {
-            return a ? b.error() : a.error();
-        }
-        const RecordRange both = RecordRange::closed(number, std::min(a->range().last(), b->range().last()));
-        if (a->slice(both) != b->slice(both)) {
-            return false;
-        }
-        if (both.last() == old.records.last()) {
-            break;
-        }
-        number = both.last().next();
-    }
-    return true;
-}
-
-/// Printing the same records as a new job is for jobs that are done: otherwise the command that was meant to start
-/// again would, given once more to continue, start over.
-Result<void> check_finished(spool::Spool& spool, const spool::Job& twin) {
-    const auto state = spool.ledger_state(twin.id);
+    // A mended file is compared before anything is printed of it; and where few records are left to print, the import
+    // has to catch up first, or the line would run dry.
+    const auto state = spool.ledger_state(job.id);
     if (!state) {
         return state.error();
     }
-    const bool waiting = state->count(spool::RecordState::open) > RecordCount{0} ||
-                         state->count(spool::RecordState::in_doubt) > RecordCount{0} ||
-                         !state->next_printable(twin.records).empty();
-    if (!state->segments().empty() && waiting) {
-        return Failure{FailureKind::usage, "job " + std::to_string(static_cast<std::int64_t>(twin.id)) +
-                                               " has the same records and is not finished (" +
-                                               std::to_string(state->count(spool::RecordState::printed).value()) +
-                                               " of " + std::to_string(twin.records.count().value()) +
-                                               " printed): continue it without --new-job"};
+    const RecordRange left = state->next_printable(job.records);
+    const bool compares_first = source != job.spec.source || left.count() < comfortable_lead;
+    const auto enough = [&] { return options.while_importing && !(compares_first && (*import)->compares()); };
+    if (const auto done = import_on(**import, enough, on_progress); !done) {
+        return with_way_out(done.error());
     }
-    return {};
+    return selection_of(spool, std::move(*import));
 }
 
-/// Refuses new records under the name of an earlier job whose records they may repeat.
-Result<void> check_earlier_jobs(spool::Spool& spool, const spool::Job& job) {
-    const auto earlier = spool.find_by_path(job.spec.source.path);
-    if (!earlier) {
-        return earlier.error();
+/// The job of this file whose import is not finished; absent = there is none.
+Result<std::optional<JobSelection>> continue_unfinished(const PrintOptions& options, spool::Spool& spool,
+                                                        const spool::JobSpec& spec, const ImportProgress& on_progress) {
+    const auto unfinished = spool.unfinished_jobs();
+    if (!unfinished) {
+        return unfinished.error();
     }
-    for (const spool::Job& old : *earlier) {
-        if (old.id == job.id) {
+    for (const spool::Job& job : *unfinished) {
+        const bool same_way = job.spec.layout == spec.layout && job.spec.base == spec.base;
+        const bool same = same_way && job.spec.source == spec.source;
+        const bool stopped = job.state == spool::ImportState::stopped;
+        if (same && options.new_job) {
+            return Failure{FailureKind::usage,
+                           name_of(job) + " has the same records and is not finished: continue it without --new-job"};
+        }
+        if (job.spec.source.path != spec.source.path || options.new_job) {
             continue;
         }
-        const auto state = spool.ledger_state(old.id);
-        if (!state) {
-            return state.error();
+        if (same && stopped) {
+            return std::optional{JobSelection{job, {}, false, {}}};
         }
-        if (state->segments().empty()) {
-            continue; // nothing of it was ever issued
-        }
-        const RecordCount printed =
-            state->count(spool::RecordState::printed) + state->count(spool::RecordState::skipped);
-        const std::string name = "job " + std::to_string(static_cast<std::int64_t>(old.id));
-        if (printed < old.records.count()) {
+        // A mended file, or perhaps a copy that was put back: its records are compared.
+        const bool comparable = same_way && (stopped || job.spec.source.size_bytes == spec.source.size_bytes);
+        if (!same && !comparable) {
+            const auto printed = printed_of(spool, job);
+            if (!printed) {
+                return printed.error();
+            }
             return Failure{FailureKind::input,
-                           job.spec.source.path + " or the way to read it has changed since " + name +
-                               " was imported from it, of which " + std::to_string(printed.value()) + " of " +
-                               std::to_string(old.records.count().value()) +
+                           spec.source.path + " or the way to read it has changed since " + name_of(job) +
+                               " was begun, which was imported while it was printed and of which " +
+                               std::to_string(printed->value()) +
                                " records are printed: restore the file and options to go on, or print it from its "
                                "first record as a new job with --new-job"};
         }
-        const auto grown = begins_with(spool, job, old);
-        if (!grown) {
-            return grown.error();
+        auto selection = go_on(options, spool, job, spec.source, on_progress);
+        return selection ? Result<std::optional<JobSelection>>{std::move(*selection)} : selection.error();
+    }
+    return std::optional<JobSelection>{};
+}
+
+/// Imports a file that may be printed meanwhile; to its end if it could be one that is known.
+Result<JobSelection> begin_running(const PrintOptions& options, spool::Spool& spool, const spool::JobSpec& spec,
+                                   const ImportProgress& on_progress) {
+    auto import = start_import(options, spool, spec);
+    if (!import) {
+        return import.error();
+    }
+    const auto begun = [&] { return !(*import)->durable().empty(); };
+    if (const auto done = import_on(**import, begun, on_progress); !done) {
+        return done.error();
+    }
+    if (!(*import)->over()) {
+        const auto known = may_be_known(spool, spec, (*import)->job(), options.new_job);
+        if (!known) {
+            return known.error();
         }
-        if (*grown) {
-            return Failure{FailureKind::input, job.spec.source.path + " has grown: its first " +
-                                                   std::to_string(old.records.count().value()) + " records are " +
-                                                   name +
-                                                   ", printed already; print the new ones with --new-job --from " +
-                                                   std::to_string(old.records.last().value() + std::uint64_t{1}) +
-                                                   ", or all of them again with --new-job"};
+        const bool whole = *known || (*import)->refused(); // nothing is printed yet: a bad row refuses the file
+        if (const auto done = whole ? import_on(
+                                          **import, [] { return false; }, on_progress)
+                                    : Result<void>{};
+            !done) {
+            return done.error();
         }
     }
-    return {};
+    auto selection = selection_of(spool, std::move(*import));
+    if (selection && selection->refused) {
+        selection->job.reset(); // found before anything was printed: it goes
+    }
+    return selection;
+}
+
+Result<JobSelection> begin_whole(const PrintOptions& options, spool::Spool& spool, const spool::JobSpec& spec,
+                                 const ImportProgress& on_progress) {
+    auto outcome = import_whole(options, spool, spec, on_progress);
+    if (!outcome) {
+        return outcome.error();
+    }
+    return JobSelection{std::move(outcome->job), std::move(outcome->report), true, {}};
 }
 
 } // namespace
@@ -182,45 +148,40 @@ Result<JobSelection> select_job(const PrintOptions& options, spool::Spool& spool
         return known.error();
     }
     if (*known && !options.new_job) {
-        return JobSelection{**known, {}, false};
+        return JobSelection{**known, {}, false, {}};
     }
-    auto selection = import(options, spool, spec, on_progress);
-    if (!selection || !selection->job) {
+    auto unfinished = continue_unfinished(options, spool, spec, on_progress);
+    if (!unfinished) {
+        return unfinished.error();
+    }
+    if (*unfinished) {
+        return std::move(**unfinished);
+    }
+    auto selection = options.while_importing ? begin_running(options, spool, spec, on_progress)
+                                             : begin_whole(options, spool, spec, on_progress);
+    if (!selection || !selection->job || selection->running) {
         return selection;
     }
-    const spool::Job& job = *selection->job;
-    const auto same = spool.find_by_content(job.content_sha256, spec.layout);
-    if (!same) {
-        return same.error();
+    const spool::Job job = *selection->job;
+    const auto twin = twin_of(spool, job, options.new_job);
+    auto checked = twin ? Result<void>{} : Result<void>{twin.error()};
+    if (checked && !*twin && !options.new_job) {
+        checked = check_earlier_jobs(spool, job);
+        checked = checked ? check_unfinished(spool, job) : checked;
     }
-    const auto twin =
-        std::find_if(same->rbegin(), same->rend(), [&](const spool::Job& other) { return other.id != job.id; });
-    if (twin != same->rend()) {
-        const auto again = options.new_job ? check_finished(spool, *twin) : Result<void>{};
-        if (options.new_job && again) {
-            return selection;
-        }
-        if (const auto removed = spool.remove_job(job.id); !removed) {
-            return removed.error();
-        }
-        if (!again) {
-            return again.error();
-        }
-        if (const auto updated = spool.update_source(twin->id, *source); !updated) {
-            return updated.error();
-        }
-        return JobSelection{*twin, {}, false};
-    }
-    if (options.new_job) {
+    if (checked && !*twin) {
         return selection;
     }
-    if (const auto checked = check_earlier_jobs(spool, job); !checked) {
-        if (const auto removed = spool.remove_job(job.id); !removed) {
-            return removed.error();
-        }
+    if (const auto removed = spool.remove_job(job.id); !removed) {
+        return removed.error();
+    }
+    if (!checked) {
         return checked.error();
     }
-    return selection;
+    if (const auto updated = spool.update_source((*twin)->id, *source); !updated) {
+        return updated.error();
+    }
+    return JobSelection{**twin, {}, false, {}};
 }
 
 } // namespace linefeed::cli

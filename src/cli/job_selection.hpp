@@ -4,10 +4,9 @@
 
 #include "base/failure.hpp"
 #include "cli/print_options.hpp"
-#include "intake/import.hpp"
-#include "spool/spool.hpp"
+#include "cli/source_import.hpp"
 
-#include <functional>
+#include <memory>
 #include <optional>
 
 namespace linefeed::cli {
@@ -16,13 +15,12 @@ struct JobSelection {
     std::optional<spool::Job> job; ///< absent: refused because of bad rows, see report
     intake::ImportReport report;   ///< of this import; empty for a job that was there already
     bool imported = false;
+    std::unique_ptr<daemon::RunningImport> running{}; ///< goes on while the job is printed
+    bool refused = false; ///< a bad row has ended the import of a job of which something is printed
 };
 
-/// Progress of an import: rows so far and the fraction of the file; false cancels.
-using ImportProgress = std::function<bool(const intake::ImportReport&, double)>;
-
-/// Finds or imports the job for `options.file`. FailureKind::input if the file changed while its job is unfinished, or
-/// grew behind a finished one (unless options.new_job).
+/// Finds or imports the job for `options.file`, or begins to import it (options.while_importing). FailureKind::input if
+/// the file changed while its job is unfinished, or grew behind a finished one (unless options.new_job).
 [[nodiscard]] Result<JobSelection> select_job(const PrintOptions& options, spool::Spool& spool,
                                               const ImportProgress& on_progress);
 

@@ -174,6 +174,11 @@ void show_summary(const spool::Job& job, const spool::LedgerState& state, bool j
         std::cout << "  " << segment.range << "  " << to_string(segment.state) << "  (run "
                   << static_cast<std::int64_t>(segment.run) << ")\n";
     }
+    if (const std::vector<RecordRange> doubt = state.ranges(RecordState::in_doubt); !doubt.empty()) {
+        std::cout << "waiting for an operator: " << doubt.front() << (doubt.size() > 1 ? " and more" : "")
+                  << " (linefeed print --last-printed, --printed or --in-doubt)" << std::endl;
+        return;
+    }
     const RecordRange next = state.next_printable(job.records);
     std::cout << (next.empty() ? std::string{"nothing left to print"}
                                : "next to print: " + std::to_string(next.first().value()))

@@ -80,6 +80,9 @@ void add_print(CLI::App& app, PrintOptions& options, RawPrintOptions& raw) {
     print.add_option("--spool", options.spool, "Database of jobs and the print ledger")->capture_default_str();
     print.add_flag("--dry-run", options.dry_run, "Check everything and show the first frames; print nothing");
     print.add_flag("--new-job", options.new_job, "Print the file as a new job, even if it was printed before");
+    print.add_flag("--while-importing", options.while_importing,
+                   "Begin to print before the file is read to its end. At a row that cannot be printed the line stops "
+                   "behind the record before it (exit code 5), and the mended file continues there");
     print.add_flag("--open-nozzle", options.open_nozzle, "Open the nozzle if it is closed (takes 30 to 60 s)");
     print
         .add_option("--acknowledge", options.acknowledge,
@@ -176,12 +179,15 @@ CLI::App& add_ledger(CLI::App& app, LedgerOptions& options, RawLedgerOptions& ra
     CLI::App& ledger =
         *app.add_subcommand("ledger", "Show what is known about the records of a job, and on whose word");
     ledger.add_option("JOB", options.job, "Number of the job, see linefeed jobs")->required();
-    ledger.add_option("--records", raw.records, "One line for each of these records: N or N-M");
-    ledger.add_flag("--verify", options.verify, "Check the hash chain of the ledger");
+    CLI::Option* const records =
+        ledger.add_option("--records", raw.records, "One line for each of these records: N or N-M");
+    CLI::Option* const verify = ledger.add_flag("--verify", options.verify, "Check the hash chain of the ledger");
+    verify->excludes(records);
     ledger
         .add_option("--export", options.export_format,
                     "Every issued record with fields, state, time, run and evidence: csv or json (lines)")
-        ->check(CLI::IsMember({"csv", "json"}));
+        ->check(CLI::IsMember({"csv", "json"}))
+        ->excludes(verify);
     ledger.add_option("--spool", options.spool, "Database of jobs and the print ledger")->capture_default_str();
     add_output(ledger, raw.output);
     return ledger;

@@ -39,6 +39,7 @@ struct PrintOptions {
     std::optional<std::uint32_t> to;
     bool dry_run = false;
     bool new_job = false;
+    bool while_importing = false;
     bool open_nozzle = false;
     std::vector<std::uint32_t> acknowledge;
     daemon::RealTimeSettings real_time;

@@ -19,6 +19,32 @@ std::string dump(const Json& json) {
     return json.dump(2, ' ', false, Json::error_handler_t::replace);
 }
 
+std::string_view name_of(spool::ImportState state) {
+    switch (state) {
+    case spool::ImportState::importing:
+        return "broken_off";
+    case spool::ImportState::stopped:
+        return "stopped_at_bad_row";
+    case spool::ImportState::ready:
+        return "complete";
+    }
+    assertion_failed("ImportState", __FILE__, __LINE__);
+}
+
+void show_row(const std::string& file, const intake::BadRow& row) {
+    const std::string column = row.column.empty() ? "" : ", column " + printable(row.column);
+    std::fprintf(stderr, "linefeed: %s: line %llu%s: %s\n", printable(file).c_str(),
+                 static_cast<unsigned long long>(row.line), column.c_str(), printable(row.reason).c_str());
+}
+
+Json rows_json(const std::vector<intake::BadRow>& rows) {
+    Json json = Json::array();
+    for (const intake::BadRow& row : rows) {
+        json.push_back({{"line", row.line}, {"column", row.column}, {"reason", row.reason}});
+    }
+    return json;
+}
+
 Json range_json(const RecordRange& range) {
     return range.empty() ? Json(nullptr) : Json{{"first", range.first().value()}, {"last", range.last().value()}};
 }
@@ -85,6 +111,7 @@ void show_json(const PrintReport& report) {
                     {"job", static_cast<std::int64_t>(report.job.id)},
                     {"file", report.job.spec.source.path},
                     {"records", range_json(report.job.records)},
+                    {"import", name_of(report.job.state)},
                     {"wanted", range_json(report.wanted)},
                     {"printed", report.printed.value()},
                     {"last_printed", report.last_printed ? Json(report.last_printed->value()) : Json(nullptr)},
@@ -92,7 +119,8 @@ void show_json(const PrintReport& report) {
                     {"issued_unknown", report.open.value()},
                     {"in_doubt", report.in_doubt.value()},
                     {"in_doubt_records", doubtful},
-                    {"in_doubt_hole", report.doubt_hole.empty() ? Json(nullptr) : Json(report.doubt_hole)}};
+                    {"in_doubt_hole", report.doubt_hole.empty() ? Json(nullptr) : Json(report.doubt_hole)},
+                    {"bad_rows", rows_json(report.bad_rows)}};
     std::cout << dump(json) << std::endl;
 }
 
@@ -118,7 +146,8 @@ void show_report(const PrintReport& report, bool json) {
         return;
     }
     std::cout << "job " << static_cast<std::int64_t>(report.job.id) << ": printed " << report.printed << " of "
-              << report.wanted.count() << " records (" << report.wanted << ")";
+              << report.wanted.count() << " records (" << report.wanted << ")"
+              << (report.job.state == spool::ImportState::importing ? " that are read so far" : "");
     if (report.last_printed) {
         std::cout << ", last printed " << *report.last_printed;
     }
@@ -134,17 +163,48 @@ void show_report(const PrintReport& report, bool json) {
     } else if (report.open > RecordCount{0}) {
         std::cout << "to go on: the same command again asks the printer how far the " << report.open
                   << " records were printed that may be in it, and continues there\n";
+    } else if (report.code == ExitCode::input_rejected) {
+        std::cout
+            << "to go on: mend the file behind record " << report.job.records.last()
+            << ", and the same command again continues there; or print it from its first record as a new job with "
+               "--new-job\n";
+    } else if (report.next.empty() && report.job.state == spool::ImportState::importing) {
+        std::cout << "to go on: the same command again reads the file on\n";
     } else if (!report.next.empty()) {
         std::cout << "to go on: the same command again continues with record " << report.next.first() << '\n';
     }
     std::cout.flush();
 }
 
-void show_bad_rows(const intake::ImportReport& report, const std::string& file, bool refused, bool json) {
+void reject(PrintReport& report, const Failure& failure) {
+    report.code = exit_code(failure.kind);
+    report.result = report.code == ExitCode::input_rejected ? "input_rejected" : to_string(failure.kind);
+    report.message = failure.message;
+}
+
+void reject(PrintReport& report, const intake::ImportReport& rows, const std::string& file) {
+    report.bad_rows = rows.reported;
+    std::string count = std::to_string(rows.bad_rows) + " of " + std::to_string(rows.rows) + " rows";
+    if (rows.bad_rows == 0) { // the job knows the first of them
+        const Json known = Json::parse(report.job.import_report, nullptr, false);
+        for (const Json& row : known.is_object() ? known.value("reported", Json::array()) : Json::array()) {
+            report.bad_rows.push_back({row.value("line", std::uint64_t{0}), row.value("column", std::string{}),
+                                       row.value("reason", std::string{})});
+        }
+        count = "the next row";
+    }
+    for (const intake::BadRow& row : report.bad_rows) {
+        show_row(file, row);
+    }
+    reject(report, Failure{FailureKind::input, "the line has stopped behind record " +
+                                                   std::to_string(report.job.records.last().value()) + ": " + count +
+                                                   " of " + file + " cannot be printed"});
+}
+
+void show_bad_rows(const intake::ImportReport& report, const std::string& file, bool refused,
+                   const spool::Job* unfinished, bool json) {
     for (const intake::BadRow& row : report.reported) {
-        const std::string column = row.column.empty() ? "" : ", column " + printable(row.column);
-        std::fprintf(stderr, "linefeed: %s: line %llu%s: %s\n", printable(file).c_str(),
-                     static_cast<unsigned long long>(row.line), column.c_str(), printable(row.reason).c_str());
+        show_row(file, row);
     }
     if (report.bad_rows > report.reported.size()) {
         std::fprintf(stderr, "linefeed: %s: and %llu more bad rows\n", printable(file).c_str(),
@@ -155,10 +215,19 @@ void show_bad_rows(const intake::ImportReport& report, const std::string& file, 
                      static_cast<unsigned long long>(report.bad_rows), static_cast<unsigned long long>(report.rows));
         return;
     }
-    std::fprintf(stderr,
-                 "linefeed: nothing is imported: %llu of %llu rows cannot be printed; mend them, or leave them out "
-                 "with --skip-bad\n",
-                 static_cast<unsigned long long>(report.bad_rows), static_cast<unsigned long long>(report.rows));
+    const auto bad = static_cast<unsigned long long>(report.bad_rows);
+    const auto all = static_cast<unsigned long long>(report.rows);
+    if (unfinished != nullptr) {
+        std::fprintf(stderr,
+                     "linefeed: nothing more is printed: %llu of %llu rows cannot be printed; mend them, and the same "
+                     "command goes on with job %lld\n",
+                     bad, all, static_cast<long long>(unfinished->id));
+    } else {
+        std::fprintf(stderr,
+                     "linefeed: nothing is imported: %llu of %llu rows cannot be printed; mend them, or leave them out "
+                     "with --skip-bad\n",
+                     bad, all);
+    }
     if (json) {
         Json result{{"result", "input_rejected"}, {"exit_code", static_cast<int>(ExitCode::input_rejected)}};
         result["import"] = Json::parse(intake::to_json(report));

@@ -36,6 +36,7 @@ struct PrintReport {
     std::vector<DoubtfulRecord> doubtful; ///< the first of them
     /// Why the last product does not tell which of them are printed (DoubtEvidence::hole); empty = it does.
     std::string doubt_hole;
+    std::vector<intake::BadRow> bad_rows; ///< that have ended the import; the first of them
 };
 
 inline constexpr std::size_t max_doubtful_shown = 300;
@@ -48,8 +49,15 @@ inline constexpr std::size_t max_doubtful_shown = 300;
 void show_doubtful(const PrintReport& report);
 /// For stdout.
 void show_report(const PrintReport& report, bool json);
-/// The rows that cannot be printed: for stderr, or as JSON on stdout.
-void show_bad_rows(const intake::ImportReport& report, const std::string& file, bool refused, bool json);
+/// The file could not be read to its end.
+void reject(PrintReport& report, const Failure& failure);
+/// A bad row has ended the import, and all records before it are printed. `rows` is empty if that was an earlier
+/// import: then the job knows.
+void reject(PrintReport& report, const intake::ImportReport& rows, const std::string& file);
+/// The rows that cannot be printed: for stderr, or as JSON on stdout. `unfinished` = the job whose import they have
+/// ended; without it nothing is imported.
+void show_bad_rows(const intake::ImportReport& report, const std::string& file, bool refused,
+                   const spool::Job* unfinished, bool json);
 /// A failure before there was anything to report.
 void show_failure(const Failure& failure, bool json);
 

@@ -14,8 +14,10 @@ constexpr auto plain_interval = std::chrono::seconds{5};
 constexpr int bar_width = 30;
 
 std::string line_of(const ProgressView::State& state) {
-    char text[64];
-    std::snprintf(text, sizeof text, " %5.1f %%  ", state.fraction * 100);
+    char text[64] = "  ";
+    if (state.fraction) {
+        std::snprintf(text, sizeof text, " %5.1f %%  ", *state.fraction * 100);
+    }
     std::string line = state.label + text + state.count;
     if (state.rate_per_s > 0) {
         std::snprintf(text, sizeof text, "  %.*f/s", state.rate_per_s < 10 ? 1 : 0, state.rate_per_s);
@@ -47,7 +49,7 @@ void ProgressView::update(const State& state) {
         std::fprintf(stderr, "linefeed: %s\n", line_of(state).c_str());
         return;
     }
-    const int filled = static_cast<int>(std::lround(std::clamp(state.fraction, 0.0, 1.0) * bar_width));
+    const int filled = static_cast<int>(std::lround(std::clamp(state.fraction.value_or(0), 0.0, 1.0) * bar_width));
     const std::string bar = std::string(static_cast<std::size_t>(filled), '#') +
                             std::string(static_cast<std::size_t>(bar_width - filled), '-');
     std::fprintf(stderr, "\r\033[K[%s] %s", bar.c_str(), line_of(state).c_str());

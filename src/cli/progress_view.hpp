@@ -15,10 +15,10 @@ public:
     explicit ProgressView(bool quiet);
 
     struct State {
-        std::string label;     ///< "printing", "importing"
-        double fraction = 0;   ///< 0…1
-        std::string count;     ///< "1234 of 100000 records"
-        double rate_per_s = 0; ///< 0 = unknown or standing still
+        std::string label;                  ///< "printing", "importing"
+        std::optional<double> fraction = 0; ///< 0…1; absent = nobody knows
+        std::string count;                  ///< "1234 of 100000 records"
+        double rate_per_s = 0;              ///< 0 = unknown or standing still
         std::optional<double> seconds_left;
     };
     void update(const State& state);

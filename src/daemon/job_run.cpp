@@ -12,10 +12,11 @@ using session::Effects;
 using session::Session;
 
 JobRun::JobRun(RunThreads threads, spool::Spool& spool, const spool::Job& job, RecordRange wanted,
-               const std::optional<OpenIssue>& open, const JobRunSettings& settings)
+               const std::optional<OpenIssue>& open, const JobRunSettings& settings, Supply* supply)
     : threads_(threads)
     , settings_(settings)
-    , store_(StoreWork{spool, job.id, LedgerKeeper{spool, job.id, wanted, link::to_string(settings.printer), open}})
+    , store_(StoreWork{spool, job.id, LedgerKeeper{spool, job.id, wanted, link::to_string(settings.printer), open},
+                       supply})
     , session_(settings.session, make_plan(open, job.id, wanted)) {}
 
 JobRun::~JobRun() {

@@ -43,12 +43,13 @@ struct RunThreads {
     StoreThread& store;
 };
 
-/// Flow: construct, start(), poll progress() and take_notices(), request_stop() if wanted, until finished(); then
-/// join() and outcome(). The spool belongs to the store thread from start() to join().
+/// `supply` = the import of the job, if it is still running. Flow: construct, start(), poll progress() and
+/// take_notices(), request_stop() if wanted, until finished(); then join() and outcome(). The spool and the supply
+/// belong to the store thread from start() to join().
 class JobRun final : private link::EffectHandler, private FeedThread::Guest {
 public:
     JobRun(RunThreads threads, spool::Spool& spool, const spool::Job& job, RecordRange wanted,
-           const std::optional<OpenIssue>& open, const JobRunSettings& settings);
+           const std::optional<OpenIssue>& open, const JobRunSettings& settings, Supply* supply = nullptr);
     ~JobRun() override;
     JobRun(const JobRun&) = delete;
     JobRun& operator=(const JobRun&) = delete;

@@ -23,6 +23,11 @@ RecordRange behind(RecordRange range, RecordNumber last) {
     return RecordRange::closed(std::max(range.first(), last.next()), range.last());
 }
 
+/// `range` without its part behind `last`.
+RecordRange up_to(RecordRange range, RecordNumber last) {
+    return range.empty() ? range : RecordRange::closed(range.first(), std::min(range.last(), last));
+}
+
 } // namespace
 
 Result<std::optional<OpenIssue>> find_open_issue(spool::Spool& spool, spool::JobId job) {
@@ -57,6 +62,13 @@ Result<std::optional<OpenIssue>> find_open_issue(spool::Spool& spool, spool::Job
     issue.facts = {started.entry.range.first(), issue.records.first().previous(),
                    issue.records.last(),        start->serial_number,
                    start->total_before,         start->last_printed_before};
+    const auto stored_job = spool.job(job);
+    if (!stored_job || !*stored_job) {
+        return stored_job ? Failure{FailureKind::internal, "an open run without its job"} : stored_job.error();
+    }
+    if ((*stored_job)->state != spool::ImportState::importing) { // the run may have begun before the end was known
+        issue.run_range = up_to(issue.run_range, (*stored_job)->records.last());
+    }
     issue.facts.last = issue.run_range.last();
     return std::optional<OpenIssue>{issue};
 }
@@ -120,8 +132,9 @@ Result<LedgerKeeper::Grant> LedgerKeeper::grant(const feeder::BeginRun& begin) {
         grant.in_doubt = true;
         return grant;
     }
-    grant.range = state->next_printable(wanted_);
-    if (grant.range.empty()) {
+    grant.range = state->next_printable(known_part(wanted_));
+    if (grant.range.empty() || grant.range.first() > imported_through_) {
+        grant.range = {};
         return grant;
     }
     const auto run = spool_.begin_run(job_, grant.range, run_start_json(printer_, begin));
@@ -129,7 +142,7 @@ Result<LedgerKeeper::Grant> LedgerKeeper::grant(const feeder::BeginRun& begin) {
         return run.error();
     }
     run_ = *run;
-    intent_through_ = printed_through_ = grant.range.first().previous();
+    intent_wanted_ = intent_through_ = printed_through_ = grant.range.first().previous();
     intent(intent_through_ + std::min(grant.range.count(), RecordCount{first_intents}));
     if (const auto committed = commit(); !committed) {
         return committed.error();
@@ -141,17 +154,36 @@ Result<LedgerKeeper::Grant> LedgerKeeper::grant(const feeder::BeginRun& begin) {
 Result<LedgerKeeper::Grant> LedgerKeeper::adopt(const feeder::AdoptRun& adopted) {
     LINEFEED_ASSERT(make_plan(open_, job_, wanted_).take_over);
     run_ = open_->run;
-    intent_through_ = open_->facts.issued_through;
+    intent_wanted_ = intent_through_ = open_->facts.issued_through;
     printed_through_ = open_->facts.printed_through;
     printed(adopted.printed_through, adopted.evidence);
     if (const auto committed = commit(); !committed) {
         return committed.error();
     }
-    return Grant{open_->run_range, intent_through_, false};
+    return Grant{known_part(open_->run_range), intent_through_, false};
+}
+
+RecordRange LedgerKeeper::known_part(RecordRange range) const {
+    return end_ ? up_to(range, *end_) : range;
+}
+
+void LedgerKeeper::imported(RecordNumber through) {
+    imported_through_ = through;
+    extend_intent();
+}
+
+void LedgerKeeper::end_at(RecordNumber last) {
+    end_ = last;
 }
 
 void LedgerKeeper::intent(RecordNumber through) {
-    if (through > intent_through_) {
+    intent_wanted_ = std::max(intent_wanted_, through);
+    extend_intent();
+}
+
+void LedgerKeeper::extend_intent() {
+    const RecordNumber through = std::min(intent_wanted_, imported_through_);
+    if (run_ && through > intent_through_) {
         const RecordNumber first = pending_intent_.empty() ? intent_through_.next() : pending_intent_.first();
         pending_intent_ = RecordRange::closed(first, through);
         intent_through_ = through;
@@ -195,6 +227,8 @@ Result<void> LedgerKeeper::commit() {
 }
 
 Result<void> LedgerKeeper::settle(const feeder::Settle& settle) {
+    printed(settle.confirmed_through, settle.evidence.mail);
+    intent_wanted_ = intent_through_; // nothing more goes out
     if (const auto committed = commit(); !committed) {
         return committed;
     }

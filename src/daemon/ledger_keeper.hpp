@@ -54,6 +54,11 @@ public:
     /// sent. Precondition: FeederPlan::take_over of make_plan().
     [[nodiscard]] Result<Grant> adopt(const feeder::AdoptRun& adopted);
 
+    /// While the job is imported: only the records up to `through` are there. Grows; intents wait for it.
+    void imported(RecordNumber through);
+    /// While the job is imported: `last` is its last record.
+    void end_at(RecordNumber last);
+
     /// Adds rows without writing them; commit() does. Both grow with `through`; what is known already is left out.
     void intent(RecordNumber through);
     void printed(RecordNumber through, const protocol::MailStatus& evidence);
@@ -73,13 +78,19 @@ public:
 
 private:
     [[nodiscard]] Result<void> append_verdict(spool::JobId job, spool::RunId run, const feeder::Settle& settle);
+    [[nodiscard]] RecordRange known_part(RecordRange range) const;
 
     spool::Spool& spool_;
     spool::JobId job_;
     RecordRange wanted_;
+    std::optional<RecordNumber> end_; ///< of the job, where it became known during the run
     std::string printer_;
     std::optional<OpenIssue> open_;
     std::optional<spool::RunId> run_;
+    void extend_intent();
+
+    RecordNumber imported_through_ = RecordNumber::max();
+    RecordNumber intent_wanted_; ///< asked for, perhaps before the records were there
     RecordNumber intent_through_;
     RecordNumber printed_through_;
     RecordRange pending_intent_;

@@ -13,10 +13,16 @@ Store::~Store() {
 
 void Store::begin(EventSignal& requests) {
     requests_signal_ = &requests;
+    if (work_.supply() != nullptr) {
+        work_.supply()->wake(&requests);
+    }
     serving_.store(true, std::memory_order_release);
 }
 
 void Store::end() {
+    if (work_.supply() != nullptr) {
+        work_.supply()->wake(nullptr);
+    }
     serving_.store(false, std::memory_order_release);
     serving_.notify_all();
 }

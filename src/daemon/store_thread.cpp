@@ -105,15 +105,16 @@ bool StoreThread::commit_together() {
     return true;
 }
 
-/// One page for one run: then it is looked again whether something is more urgent.
-void StoreThread::read_ahead() {
+/// One step for one run: then it is looked again whether something is more urgent. False if none wants it.
+bool StoreThread::take_turns(bool (StoreWork::*wants)() const, void (StoreWork::*step)()) {
     for (std::size_t looked = 0; looked < stores_.size(); ++looked) {
-        Store& store = *stores_[next_reader_++ % stores_.size()];
-        if (store.work().wants_read_ahead()) {
-            store.guarded([](StoreWork& work) { work.read_ahead(); });
-            return;
+        Store& store = *stores_[next_turn_++ % stores_.size()];
+        if ((store.work().*wants)()) {
+            store.guarded([step](StoreWork& work) { (work.*step)(); });
+            return true;
         }
     }
+    return false;
 }
 
 /// By any of the runs: a failure is the next commit's as well.
@@ -150,8 +151,10 @@ void StoreThread::run() {
         if (any(&StoreWork::intent_waits) || (wants_commit && now - last_commit >= gather)) {
             commit();
             last_commit = Clock::now();
-        } else if (any(&StoreWork::wants_read_ahead)) {
-            read_ahead();
+        } else if (take_turns(&StoreWork::wants_read_ahead, &StoreWork::read_ahead)) {
+            // perhaps another
+        } else if (take_turns(&StoreWork::wants_supply_step, &StoreWork::supply_step)) {
+            // perhaps another
         } else if (now - last_checkpoint >= checkpoint_interval) {
             checkpoint();
             last_checkpoint = now;

@@ -38,7 +38,7 @@ private:
     [[nodiscard]] bool any(bool (StoreWork::*wants)() const) const;
     void commit();
     [[nodiscard]] bool commit_together();
-    void read_ahead();
+    bool take_turns(bool (StoreWork::*wants)() const, void (StoreWork::*step)());
     void checkpoint();
     void let_go_of_ended();
 
@@ -46,7 +46,7 @@ private:
     EventSignal signal_;
     std::vector<Store*> stores_;
     std::vector<Store*> writers_; ///< those that want a commit; has room for all
-    std::size_t next_reader_ = 0; ///< whose turn it is to have a page read
+    std::size_t next_turn_ = 0;   ///< whose turn it is to have a page read or written
 
     std::mutex outside_; ///< guards what follows; the feed thread never takes it
     std::vector<Store*> arriving_;

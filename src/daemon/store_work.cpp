@@ -13,6 +13,18 @@ struct Overloaded : Visitors... {
 template <typename... Visitors>
 Overloaded(Visitors...) -> Overloaded<Visitors...>;
 
+/// So many records make a page worth being lent.
+constexpr RecordCount worthwhile_records{256};
+constexpr std::size_t worthwhile_bytes = std::size_t{64} * 1024;
+
+void append(RecordPage& page, const RecordPage& more) {
+    const auto offset = static_cast<std::uint32_t>(page.frames.size());
+    for (const std::uint32_t end : more.ends) {
+        page.ends.push_back(offset + end);
+    }
+    page.frames += more.frames;
+}
+
 } // namespace
 
 void deliver(const StoreReply& reply, session::Session& session, Instant now, session::Effects& effects) {
@@ -22,6 +34,8 @@ void deliver(const StoreReply& reply, session::Session& session, Instant now, se
             [&](const Granted& granted) { session.on_granted(granted.range, granted.durable_through, now, effects); },
             [&](const Refused& refused) { session.on_refused(refused.why, now, effects); },
             [&](const Durable& durable) { session.on_durable(durable.through, now, effects); },
+            [&](const EndKnown& end) { session.on_end_known(end.last, now, effects); },
+            [&](const SupplyFailed&) { session.request_stop(now, effects); },
             [&](const Settled&) { session.on_settled(now, effects); },
             [&](const PageReady& ready) { session.on_page(ready.page, now, effects); },
             [&](const StorageFailed&) { session.on_storage_failed(now, effects); },
@@ -29,10 +43,16 @@ void deliver(const StoreReply& reply, session::Session& session, Instant now, se
         reply);
 }
 
-StoreWork::StoreWork(spool::Spool& spool, spool::JobId job, LedgerKeeper keeper)
+StoreWork::StoreWork(spool::Spool& spool, spool::JobId job, LedgerKeeper keeper, Supply* supply)
     : spool_(spool)
     , job_(job)
-    , keeper_(std::move(keeper)) {}
+    , keeper_(std::move(keeper))
+    , supply_(supply) {
+    if (supply_ != nullptr) {
+        take_supply();
+        replies_.clear(); // nothing has begun that could end
+    }
+}
 
 void StoreWork::take(const StoreRequest& request) {
     LINEFEED_ASSERT(!ended_);
@@ -141,12 +161,38 @@ void StoreWork::report_durable() {
     }
 }
 
+/// What can be read of to_read_ now.
+RecordRange StoreWork::readable() const {
+    if (supply_ == nullptr || to_read_.empty()) {
+        return to_read_;
+    }
+    const RecordRange there = supply_->durable();
+    return there.empty() ? there : RecordRange::closed(to_read_.first(), std::min(to_read_.last(), there.last()));
+}
+
+/// A slow source makes small pages. So that those lent hold a first fill for sure, half of them are kept for pages that
+/// are worth it.
 bool StoreWork::wants_read_ahead() const {
-    return failure_.empty() && !ended_ && !to_read_.empty() && lent_.size() < session::max_pages;
+    if (!failure_.empty() || ended_ || lent_.size() >= session::max_pages) {
+        return false;
+    }
+    const RecordRange next = readable();
+    const bool rest = next == to_read_;
+    return !next.empty() && (rest || lent_.size() < session::max_pages / 2 || next.count() >= worthwhile_records);
 }
 
 void StoreWork::read_ahead() {
-    auto page = spool_.read_page(job_, to_read_.first());
+    const RecordRange next = readable();
+    auto page = spool_.read_page(job_, next.first());
+    while (page && page->range().count() < worthwhile_records && page->frames.size() < worthwhile_bytes &&
+           page->range().last() < next.last()) {
+        const auto more = spool_.read_page(job_, page->range().last().next());
+        if (!more) {
+            page = more.error();
+            break;
+        }
+        append(*page, *more);
+    }
     if (!page) {
         fail(page.error());
         return;
@@ -155,6 +201,35 @@ void StoreWork::read_ahead() {
     to_read_ = last >= to_read_.last() ? RecordRange{} : RecordRange::closed(last.next(), to_read_.last());
     lent_.push_back(std::make_unique<RecordPage>(std::move(*page)));
     replies_.emplace_back(PageReady{lent_.back().get()});
+}
+
+bool StoreWork::wants_supply_step() const {
+    return failure_.empty() && !ended_ && supply_ != nullptr && !supply_over_ && supply_->wants_step();
+}
+
+void StoreWork::supply_step() {
+    supply_->step();
+    take_supply();
+}
+
+void StoreWork::take_supply() {
+    const RecordRange there = supply_->durable();
+    keeper_.imported(there.empty() ? RecordNumber{} : there.last());
+    if (supply_->end_known()) {
+        supply_over_ = true;
+        keeper_.end_at(there.last());
+        if (!to_read_.empty()) {
+            to_read_ = RecordRange::closed(to_read_.first(), std::min(to_read_.last(), there.last()));
+        }
+        replies_.emplace_back(EndKnown{there.last()});
+    } else if (supply_->failure()) {
+        supply_over_ = true;
+        if (supply_->failure()->kind == FailureKind::storage) {
+            fail(*supply_->failure());
+        } else {
+            replies_.emplace_back(SupplyFailed{});
+        }
+    }
 }
 
 void StoreWork::checkpoint() {

@@ -4,6 +4,7 @@
 
 #include "base/record_page.hpp"
 #include "daemon/ledger_keeper.hpp"
+#include "daemon/supply.hpp"
 #include "feeder/actions.hpp"
 #include "session/session.hpp"
 #include "spool/spool.hpp"
@@ -34,21 +35,29 @@ struct Refused {
 struct Durable {
     RecordNumber through;
 };
+/// No record follows `last`.
+struct EndKnown {
+    RecordNumber last;
+};
+/// No record follows those that are there, although the source has not come to its end.
+struct SupplyFailed {};
 struct Settled {};
 struct PageReady {
     const RecordPage* page = nullptr;
 };
 struct StorageFailed {};
-using StoreReply = std::variant<std::monostate, Granted, Refused, Durable, Settled, PageReady, StorageFailed>;
+using StoreReply =
+    std::variant<std::monostate, Granted, Refused, Durable, EndKnown, SupplyFailed, Settled, PageReady, StorageFailed>;
 
 /// Hands a reply to the session.
 void deliver(const StoreReply& reply, session::Session& session, Instant now, session::Effects& effects);
 
 /// Flow: take() each request in order; commit() when wants_commit(), at once if intent_waits(), within 50 ms otherwise;
-/// read_ahead() when nothing else is to do; take_replies() after each. The End request is the last.
+/// read_ahead() when nothing else is to do, then supply_step(); take_replies() after each. The End request is the last.
 class StoreWork {
 public:
-    StoreWork(spool::Spool& spool, spool::JobId job, LedgerKeeper keeper);
+    /// `supply` = the import of the job, if it is still running; it must outlive this.
+    StoreWork(spool::Spool& spool, spool::JobId job, LedgerKeeper keeper, Supply* supply = nullptr);
 
     void take(const StoreRequest& request);
     /// Rows wait to be written.
@@ -63,6 +72,9 @@ public:
     [[nodiscard]] bool wants_read_ahead() const;
     /// Reads one page.
     void read_ahead();
+    /// The import has something to write.
+    [[nodiscard]] bool wants_supply_step() const;
+    void supply_step();
     /// Copies the write-ahead log into the database.
     void checkpoint();
 
@@ -70,6 +82,7 @@ public:
     /// std::bad_alloc came out of one of the above. False if the storage had failed before; otherwise the caller has to
     /// deliver StorageFailed himself, since there is no memory for a reply.
     [[nodiscard]] bool fail_out_of_memory() noexcept;
+    [[nodiscard]] Supply* supply() const { return supply_; }
     [[nodiscard]] bool ended() const { return ended_; }
     /// What went wrong with the storage; empty = nothing. Nothing is written after that.
     [[nodiscard]] const std::string& failure() const { return failure_; }
@@ -82,10 +95,14 @@ private:
     void end(const feeder::End& end);
     void report_durable();
     void fail(Failure failure);
+    void take_supply();
+    [[nodiscard]] RecordRange readable() const;
 
     spool::Spool& spool_;
     spool::JobId job_;
     LedgerKeeper keeper_;
+    Supply* supply_;
+    bool supply_over_ = false;                     ///< its end or failure has been told
     RecordRange to_read_;                          ///< records whose pages have not been read yet
     std::deque<std::unique_ptr<RecordPage>> lent_; ///< at most session::max_pages
     RecordNumber durable_reported_;

@@ -57,6 +57,8 @@ std::string describe(const Notice& notice) {
         return "the printer was still printing records of the earlier run: it is stopped to learn where it is";
     case NoticeCode::nozzle_opening:
         return "opening the nozzle: this takes 30 to 60 s";
+    case NoticeCode::supply_low:
+        return "the printer runs empty soon: the records are read more slowly than the line prints them";
     case NoticeCode::entries_differ:
         return "the printer reports another number of FIFO entries than was sent";
     }

@@ -46,6 +46,8 @@ struct Settle {
     bool earlier_run = false;
     /// Only what is surely printed is known so far; the rest stays open until the FIFO is empty.
     bool provisional = false;
+    /// Confirmed before. The store may not have been told yet: confirmations wait while it is busy, a verdict does not.
+    RecordNumber confirmed_through{};
     friend bool operator==(const Settle&, const Settle&) = default;
 };
 /// To the ledger: grant records for a new run. Answered by Feeder::on_granted.
@@ -82,6 +84,7 @@ enum class NoticeCode {
     taken_over,         ///< the printer was still printing the earlier run, which goes on without a stop
     found_printing,     ///< the printer was still printing the earlier run: it is stopped to learn the truth
     nozzle_opening,     ///< waiting for the nozzle
+    supply_low,         ///< the FIFO runs empty soon, and no record is at hand
     entries_differ,     ///< the FIFO holds another number of entries than was sent
 };
 struct Notice {

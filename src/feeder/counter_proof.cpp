@@ -3,10 +3,13 @@
 namespace linefeed::feeder {
 
 CounterProof::Result CounterProof::counted(std::optional<std::uint32_t> prints, std::uint64_t claimed,
-                                           bool stop_would_show, Instant now) {
+                                           std::uint64_t sent, bool stop_would_show, Instant now) {
     next_ = now + interval;
     if (!prints || *prints == 0) {
         return Result::no_counter;
+    }
+    if (*prints > sent) {
+        return Result::consistent;
     }
     prints_ = prints;
     reports_ = 0;
@@ -27,7 +30,7 @@ bool CounterProof::reported(std::uint64_t claimed) {
     }
     const bool all = *prints_ >= claimed;
     prints_.reset();
-    if (all && stop_would_show_) {
+    if (all && stop_would_show_ && claimed >= doubted_through_) {
         doubted_ = false;
     }
     return all;

@@ -6,6 +6,7 @@
 
 #include "base/time.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 
@@ -20,8 +21,12 @@ public:
     /// Least time between two counts.
     static constexpr Duration interval = std::chrono::milliseconds{40};
 
-    /// A stop may go unseen from now on.
-    void doubt() { doubted_ = true; }
+    /// Of the first `through` records some may be missing in the printer: the numbers count only if the counter bears
+    /// them out, until it has done so for all of these.
+    void doubt(std::uint64_t through) {
+        doubted_ = true;
+        doubted_through_ = std::max(doubted_through_, through);
+    }
     [[nodiscard]] bool doubted() const { return doubted_; }
 
     [[nodiscard]] bool wants_count(Instant now) const { return doubted_ && !prints_ && now >= next_; }
@@ -31,10 +36,11 @@ public:
         no_counter, ///< it is not reported, or does not move: the numbers have to be believed
         behind,     ///< for longer than patience: records are missing
     };
-    /// `?CC` was answered with `prints`; `claimed` prints were reported in answers before. `stop_would_show`: the stop
-    /// point stands, so a later stop will be seen.
-    [[nodiscard]] Result counted(std::optional<std::uint32_t> prints, std::uint64_t claimed, bool stop_would_show,
-                                 Instant now);
+    /// `?CC` was answered with `prints`; `claimed` prints were reported in answers before, and the printer got no more
+    /// than `sent` records: a count above that proves nothing, since it is another's or damaged. `stop_would_show`: the
+    /// stop point stands, so a later stop will be seen.
+    [[nodiscard]] Result counted(std::optional<std::uint32_t> prints, std::uint64_t claimed, std::uint64_t sent,
+                                 bool stop_would_show, Instant now);
 
     /// `=SM` claims this many prints, the one in progress included. True if all of them were surely made: the second
     /// answer behind the count is surely newer than it, and claims no more.
@@ -42,6 +48,7 @@ public:
 
 private:
     bool doubted_ = false;
+    std::uint64_t doubted_through_ = 0; ///< records
     bool stop_would_show_ = false;
     std::optional<std::uint32_t> prints_; ///< the last count, until an answer behind it is compared
     int reports_ = 0;                     ///< `=SM` answers since

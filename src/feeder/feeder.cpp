@@ -147,6 +147,11 @@ void Feeder::locate_step(Instant now, Actions& out) {
         return;
     }
     const bool print_in_progress = !mail_.last_print_finished && status_.machine != MachineState::printing;
+    if (print_in_progress && mail_reads_ >= 2) {
+        broken_off_ = mail_.last_printed;
+    } else if (mail_.last_printed == broken_off_) {
+        broken_off_ = RecordNumber{}; // it has finished after all
+    }
     const bool not_flushed = phase_ == Phase::clearing && mail_.entries > 0;
     if (mail_reads_ < 2) {
         ask(Parameter::SM, now, out);

@@ -94,6 +94,9 @@ public:
     // Facts from the ledger and the pages.
     /// The truth is in the ledger, and `range` may be printed; intents up to `durable_through` are durable.
     void on_granted(RecordRange range, RecordNumber durable_through, Instant now, Actions& out);
+    /// The granted range ends earlier than it seemed: `last` is the last record there is. Precondition: it is not
+    /// behind what was supplied.
+    void on_end_known(RecordNumber last, Instant now, Actions& out);
     /// No records are granted: `why` is nothing_to_print or records_in_doubt.
     void on_refused(OutcomeCode why, Actions& out);
     void on_durable(RecordNumber through, Instant now, Actions& out);
@@ -121,6 +124,13 @@ private:
         kept,      ///< seen to stand while the printer prints: from now on it vanishes only with a stop
         ignored,   ///< by this firmware
     };
+    /// The way of the stop point from behind all records that can come to the last one.
+    enum class StopMove {
+        none,
+        wanted,   ///< the end is known; the FIFO is being filled
+        draining, ///< nothing is sent until all has arrived that was
+        sent,     ///< `=CM` is on its way; nothing is sent until it is read back
+    };
 
     // feeder_time.cpp: asking and waiting, and locate_step() of feeder.cpp
     void enter(Phase phase, Instant now, Duration timeout);
@@ -146,6 +156,7 @@ private:
     void check_ready(Instant now, Actions& out);
     void check_errors(Instant now, Actions& out);
     void flushed(Instant now, Actions& out);
+    void set_stop_point(Instant now, Actions& out);
     void stop_point_answered(Instant now, Actions& out);
     void try_loading(Instant now, Actions& out);
     void verify(Instant now, Actions& out);
@@ -159,6 +170,8 @@ private:
     void begin_takeover(Instant now, Actions& out);
     void takeover_step(Instant now, Actions& out);
     [[nodiscard]] bool counter_contradicts() const;
+    [[nodiscard]] std::optional<std::uint32_t> prints_of_earlier_run() const;
+    [[nodiscard]] RecordNumber surely_printed() const;
     void taken_over(RecordRange range, RecordNumber durable_through, Instant now, Actions& out);
     void halt(Instant now, Actions& out);
 
@@ -167,7 +180,14 @@ private:
     void print_mail(Instant now, Actions& out);
     [[nodiscard]] bool follow(Instant now, Actions& out);
     void poll_on(Instant now);
-    void watch_left_over();
+    enum class Report {
+        fits,
+        damaged,    ///< or it is impossible: the next answer tells
+        impossible, ///< more records than were sent
+    };
+    [[nodiscard]] Report judge_report();
+    void watch_for_missing();
+    void doubt_number();
     [[nodiscard]] bool take_report(Instant now, Actions& out);
     void confirm_reported(Actions& out);
     void ask_for_proof(Instant now, Actions& out);
@@ -180,6 +200,15 @@ private:
     void insist_on_stop_point(Actions& out);
     void all_printed(Instant now, Actions& out);
     void refill_now(Actions& out);
+
+    // feeder_supply.cpp: while the end of the run is not known
+    void move_stop_point(Actions& out);
+    [[nodiscard]] bool stop_point_stands() const;
+    void await_new_answers();
+    [[nodiscard]] bool refill_waits() const;
+    void follow_stop_point(Instant now, Actions& out);
+    void stop_point_moved(Instant now, Actions& out);
+    void watch_supply(Actions& out);
 
     // feeder_stopping.cpp: from the last print or an interruption to the end
     void begin_stop(OutcomeCode cause, Instant now, Actions& out);
@@ -216,10 +245,13 @@ private:
     Instant identity_answered_at_{}; ///< the first of the answers
     int identity_answers_ = 0;
     struct MailAsked {
-        Instant at;
-        int under_way = 0; ///< with this one
+        Instant at{};
+        int under_way = 0;           ///< with this one
+        RecordNumber sent_through{}; ///< before it
     };
     std::array<MailAsked, 64> mail_asked_{}; ///< ring of the inquiries under way
+    RecordNumber sent_before_inquiry_;       ///< the one that was answered last
+    RecordNumber surely_received_;           ///< sent before the inquiry before: an answer may be so old
     std::size_t mail_oldest_ = 0;
     int mail_outstanding_ = 0;
     int counters_outstanding_ = 0;
@@ -239,17 +271,24 @@ private:
     RecordNumber taken_sent_through_;
     RecordNumber number_before_count_; ///< reported before `?CC` was asked
 
-    std::int32_t acknowledged_ = 0;  ///< the error that `!EQ` was sent for
-    RecordNumber left_over_;         ///< last printed number that stood in the printer before this run
-    bool left_over_passed_ = false;  ///< the printer has reported another number since
-    bool other_number_seen_ = false; ///< in the last answer
+    std::int32_t acknowledged_ = 0; ///< the error that `!EQ` was sent for
+    RecordNumber left_over_;        ///< last printed number that stood in the printer before this run
+    bool left_over_passed_ = false; ///< the printer has reported another number since
+    /// So many more records than were sent are in the printer by the last answer; absent: it fitted.
+    std::optional<std::uint64_t> odd_excess_;
+    std::uint64_t excess_of_fill_ = 0; ///< 1: its firmware counts the loaded record, too
     std::optional<std::uint32_t> total_before_;
     StopPoint stop_point_ = StopPoint::unset;
     int stop_point_tries_ = 0;
-    int stop_point_misses_ = 0;              ///< answers without the stop point since it was sent
-    std::optional<Instant> suspected_since_; ///< the stop point vanished: nothing is sent before `?RS` has told why
-    bool restarted_ = false;                 ///< stopped and started again at the printer, as records were on their way
-    bool memory_lost_ = false;               ///< the reported number went back
+    int stop_point_misses_ = 0; ///< answers without the stop point since it was sent
+    StopMove stop_move_ = StopMove::none;
+    std::optional<RecordNumber> old_stop_point_; ///< set before the end was known; the new one has not been read back
+    int old_answers_left_ = 0;                   ///< answers that may be from before this step of the move
+    bool supply_noticed_ = false;                ///< low, and said so
+    std::optional<Instant> suspected_since_;     ///< the stop point vanished: nothing is sent before `?RS` has told why
+    bool restarted_ = false;   ///< stopped and started again at the printer, as records were on their way
+    RecordNumber broken_off_;  ///< a print that was not finished when the printer stood; 0 = none
+    bool memory_lost_ = false; ///< the reported number went back
     std::optional<Instant> all_printed_at_;
     bool marker_sent_ = false;
     bool any_sent_ = false;

@@ -154,6 +154,10 @@ void Feeder::flushed(Instant now, Actions& out) {
         return;
     }
     left_over_ = mail_.last_printed;
+    set_stop_point(now, out);
+}
+
+void Feeder::set_stop_point(Instant now, Actions& out) {
     enter(Phase::setting_stop, now, Duration::max());
     out.push_back(SetStopAt{refill_.range().last()});
     ask(Parameter::SM, now, out);
@@ -201,9 +205,15 @@ void Feeder::verify(Instant now, Actions& out) {
         ask_later(Parameter::SM, now);
         return;
     }
+    const std::uint64_t excess = mail_.entries >= sent ? mail_.entries + std::uint64_t{1} - sent : 0;
+    if (excess > 1) {
+        begin_stop(OutcomeCode::impossible_report, now, out); // somebody else feeds the printer
+        return;
+    }
+    excess_of_fill_ = excess;
     if (!as_expected) {
         out.push_back(Notice{NoticeCode::entries_differ, {}});
-        counter_proof_.doubt(); // a stop, or a damaged line, may have cost a part of the fill
+        doubt_number(); // a stop, or a damaged line, may have cost a part of the fill
     }
     enter(Phase::starting, now, Duration::max());
     go_due_ = now + settings_.fill_lead;
@@ -222,7 +232,7 @@ void Feeder::start_mail(Instant now, Actions& out) {
     if (go_due_) {
         return; // asked about the fill
     }
-    if (!stop_would_show() || mail_.stop_at == refill_.range().last()) {
+    if (!stop_would_show() || stop_point_stands()) {
         static_cast<void>(follow(now, out));
     }
     poll_on(now);

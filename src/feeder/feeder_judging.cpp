@@ -29,7 +29,7 @@ OpenRun Feeder::open_run() const {
 
 Evidence Feeder::evidence() const {
     if (!has_granted_records()) {
-        return {.mail = mail_, .printer = facts_};
+        return {.mail = mail_, .printer = facts_, .broken_off = broken_off_};
     }
     // Another client may have set a stop point before the end: then the number contradicts the message.
     const bool at_the_end = mail_.last_printed == refill_.range().last() || mail_.last_printed == RecordNumber{};
@@ -38,7 +38,11 @@ Evidence Feeder::evidence() const {
             .end_message = is_error(status_.error, protocol::error_code::last_record_printed) && at_the_end &&
                            stop_would_show() && refill_.all_sent() && !restarted_,
             .uninterrupted = !memory_lost_,
-            .restarted = restarted_};
+            .restarted = restarted_,
+            .restart_unseen = counter_proof_.doubted(),
+            .fed_by_another =
+                cause_ == OutcomeCode::impossible_report || is_error(status_.error, protocol::error_code::buffer_full),
+            .broken_off = broken_off_};
 }
 
 /// The printer stands and has been asked. Final when nothing of the run can be in its FIFO.
@@ -59,12 +63,13 @@ void Feeder::judge(Instant now, Actions& out) {
 
 void Feeder::record_printed(const Verdict& verdict, const Evidence& seen, Instant now, Actions& out) {
     first_look_ = seen;
+    const RecordNumber confirmed = confirmed_through_;
     if (!verdict.printed.empty()) {
         (has_granted_records() ? confirmed_through_ : plan_.open->printed_through) = verdict.printed.last();
     }
     enter(Phase::recording, now, settings_.stop_timeout);
     const Verdict surely{.printed = verdict.printed, .basis = verdict.basis};
-    out.push_back(Settle{surely, seen, !has_granted_records(), true});
+    out.push_back(Settle{surely, seen, !has_granted_records(), true, confirmed});
     ++settles_pending_;
 }
 
@@ -108,7 +113,7 @@ void Feeder::judge_finally(Instant now, Actions& out) {
 
 /// The final verdict goes to the ledger, and the run ends or begins.
 void Feeder::settle(const Verdict& verdict, const Evidence& seen, Instant now, Actions& out) {
-    out.push_back(Settle{verdict, seen, !has_granted_records(), false});
+    out.push_back(Settle{verdict, seen, !has_granted_records(), false, confirmed_through_});
     ++settles_pending_;
     if (!has_granted_records()) {
         plan_.open.reset();

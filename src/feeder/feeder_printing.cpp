@@ -2,6 +2,7 @@
 // vanishing is the first sign of a stop: the printer forgets it together with the records in its FIFO (protocol,
 // section 5).
 #include "feeder/feeder.hpp"
+#include "feeder/mailing_error.hpp"
 
 #include <algorithm>
 
@@ -28,6 +29,10 @@ void Feeder::print_status(Instant now, Actions& out) {
     if (suspected_since_) {
         stop_suspected(now, out);
     }
+    if (phase_ == Phase::printing && is_error(status_.error, protocol::error_code::buffer_full)) {
+        begin_stop(OutcomeCode::impossible_report, now, out); // by our credit there was room
+        return;
+    }
     if (phase_ != Phase::printing || status_.error.none() || status_.error.raw == error_noticed_) {
         return;
     }
@@ -53,11 +58,16 @@ bool Feeder::follow(Instant now, Actions& out) {
     if (!take_report(now, out)) {
         return false;
     }
+    watch_for_missing();
     pacing_.printed(refill_.printed_through() - refill_.range().first().previous(), now);
     if (phase_ == Phase::printing) {
-        insist_on_stop_point(out);
+        stop_move_ == StopMove::none ? insist_on_stop_point(out) : follow_stop_point(now, out);
+    }
+    if (phase_ == Phase::stopping) {
+        return false; // the FIFO was lost
     }
     refill_now(out);
+    watch_supply(out);
     ask_for_proof(now, out);
     return true;
 }
@@ -68,23 +78,39 @@ void Feeder::poll_on(Instant now) {
     mail_due_ = std::max(now, std::min(mail_due_, now + pacing_.poll_interval(refill_.level()))) + least;
 }
 
-/// A number from before the run that could be one of it is gone only when two answers in a row say so: a serial line
-/// may lose a digit.
-void Feeder::watch_left_over() {
-    const bool other = mail_.last_printed != left_over_;
-    const RecordRange range = refill_.range();
-    const bool could_be_ours = range.first() <= left_over_ && left_over_ <= range.last();
-    left_over_passed_ = left_over_passed_ || (other && (other_number_seen_ || !could_be_ours));
-    other_number_seen_ = other;
+/// The printer cannot have more in its FIFO behind the reported number than was sent, and the number does not go back.
+/// If it seems so, a serial line has lost a byte of the answer; or it is true, and the next answer says the same.
+Feeder::Report Feeder::judge_report() {
+    const std::uint64_t waiting = mail_.entries == 0 ? 0 : mail_.entries + std::uint64_t{1};
+    const std::uint64_t held = mail_.last_printed.value() + waiting;
+    const std::uint64_t sent = refill_.sent_through().value() + (marker_sent_ ? std::uint64_t{1} : 0);
+    const std::uint64_t excess = held - std::min(held, sent);
+    const bool odd = excess > 0 || mail_.last_printed < refill_.printed_through();
+    const bool repeated = odd_excess_ == excess;
+    odd_excess_ = odd ? std::optional{excess} : std::nullopt;
+    if (!odd || (repeated && excess <= excess_of_fill_)) {
+        return Report::fits;
+    }
+    return repeated ? Report::impossible : Report::damaged;
 }
 
 /// Takes the printed number from `mail_`. False if it cannot be right: then the line is being stopped.
 bool Feeder::take_report(Instant now, Actions& out) {
     const bool none_yet = refill_.printed_through() < refill_.range().first();
-    watch_left_over();
-    if (!left_over_passed_ || (none_yet && mail_.last_printed == RecordNumber{})) {
+    const bool left_over = !left_over_passed_ && mail_.last_printed == left_over_;
+    if (left_over || (none_yet && mail_.last_printed == RecordNumber{})) {
+        odd_excess_.reset();
         return true; // the number was there before this run
     }
+    const Report report = judge_report();
+    if (report == Report::damaged) {
+        return true;
+    }
+    if (report == Report::impossible) {
+        begin_stop(OutcomeCode::impossible_report, now, out); // there is a record of somebody else in the FIFO
+        return false;
+    }
+    left_over_passed_ = true;
     const bool behind_last = marker_sent_ && mail_.last_printed == refill_.range().last().next();
     const RecordNumber printed = behind_last ? refill_.range().last() : mail_.last_printed;
     if (!refill_.printed(printed)) {
@@ -94,7 +120,7 @@ bool Feeder::take_report(Instant now, Actions& out) {
     }
     const bool finished = mail_.last_print_finished || behind_last;
     if (pacing_.leaps(refill_.printed_through() - refill_.range().first().previous(), now)) {
-        counter_proof_.doubt(); // another client may have flushed the FIFO: no stop point shows that
+        doubt_number(); // another client may have flushed the FIFO: no stop point shows that
     }
     reported_through_ = finished ? printed : std::max(reported_through_, printed.previous());
     confirm_reported(out);
@@ -105,12 +131,25 @@ bool Feeder::take_report(Instant now, Actions& out) {
 /// counter has to.
 void Feeder::confirm_reported(Actions& out) {
     if (!stop_would_show()) {
-        counter_proof_.doubt();
+        doubt_number();
     }
     const bool proven = counter_proof_.reported(prints_through(mail_.last_printed));
     if (proven || !counter_proof_.doubted() || !total_before_) {
         confirm(reported_through_, out);
     }
+}
+
+/// Fewer records are in the printer than it surely received: a serial line has lost some, or another client has flushed
+/// the FIFO.
+void Feeder::watch_for_missing() {
+    const std::uint64_t held = refill_.printed_through().value() + mail_.entries + std::uint64_t{1};
+    if (held < surely_received_.value()) {
+        doubt_number();
+    }
+}
+
+void Feeder::doubt_number() {
+    counter_proof_.doubt(prints_through(refill_.sent_through()));
 }
 
 void Feeder::ask_for_proof(Instant now, Actions& out) {
@@ -143,7 +182,8 @@ void Feeder::print_counters(Instant now, Actions& out) {
     if (facts_.total_prints && total_before_) {
         prints = *facts_.total_prints - *total_before_;
     }
-    switch (counter_proof_.counted(prints, prints_through(reported_through_), stop_would_show(), now)) {
+    const std::uint64_t sent = prints_through(refill_.sent_through()) + (marker_sent_ ? 1 : 0);
+    switch (counter_proof_.counted(prints, prints_through(reported_through_), sent, stop_would_show(), now)) {
     case CounterProof::Result::consistent:
         return;
     case CounterProof::Result::no_counter:
@@ -163,7 +203,7 @@ bool Feeder::stop_point_vanished(Instant now, Actions& out) {
     if (!stop_would_show()) {
         return false;
     }
-    if (mail_.stop_at == refill_.range().last()) {
+    if (stop_point_stands()) {
         stop_point_ = StopPoint::kept;
         suspected_since_.reset();
         restarted_ = false;
@@ -181,6 +221,8 @@ bool Feeder::stop_point_vanished(Instant now, Actions& out) {
 void Feeder::stop_suspected(Instant now, Actions& out) {
     if (stop_point_ == StopPoint::kept_idle) {
         stop_point_ = StopPoint::unset; // this firmware keeps it only when it is set after the start
+        stop_move_ = StopMove::none;
+        old_stop_point_.reset();
         suspected_since_.reset();
         return;
     }
@@ -216,7 +258,7 @@ void Feeder::insist_on_stop_point(Actions& out) {
 }
 
 void Feeder::refill_now(Actions& out) {
-    if (suspected_since_) {
+    if (refill_waits()) {
         return;
     }
     if (const auto intent = refill_.next_intent()) {
@@ -242,7 +284,7 @@ void Feeder::all_printed(Instant now, Actions& out) {
     if (!all_printed_at_) {
         all_printed_at_ = now;
     }
-    if (stop_point_ != StopPoint::kept || now - *all_printed_at_ > stop_patience) {
+    if (stop_point_ != StopPoint::kept || old_stop_point_ || now - *all_printed_at_ > stop_patience) {
         send_stop(now, out);
     } else if (!status_outstanding_) {
         ask(Parameter::RS, now, out);

@@ -114,6 +114,9 @@ OutcomeCode Feeder::cause_of_stop() const {
     if (cause_) {
         return *cause_;
     }
+    if (is_error(status_.error, protocol::error_code::buffer_empty) && refill_.starved()) {
+        return OutcomeCode::ran_dry;
+    }
     if (!status_.error.none() && status_.error.raw != error_noticed_) {
         return OutcomeCode::printer_error;
     }

@@ -47,37 +47,56 @@ void Feeder::takeover_step(Instant now, Actions& out) {
     } else if (!agrees) {
         ask(Parameter::SM, now, out);
     } else {
-        const RecordNumber sure = mail_.last_print_finished ? mail_.last_printed : mail_.last_printed.previous();
+        confirmed_through_ = std::max(run.printed_through, surely_printed());
         taken_sent_through_ = RecordNumber{static_cast<std::uint32_t>(in_printer_through)};
         enter(Phase::granting, now, Duration::max());
         taking_over_ = true;
         any_sent_ = true; // by the earlier run
-        out.push_back(AdoptRun{std::max(sure, run.printed_through), taken_sent_through_, mail_});
+        out.push_back(AdoptRun{confirmed_through_, taken_sent_through_, mail_});
     }
 }
 
 /// The total print counter has seen more prints than the records of this run account for, or fewer: something else is
 /// being printed. Its answer came between two of the number.
 bool Feeder::counter_contradicts() const {
-    const OpenRun& run = *plan_.open;
-    if (!run.total_before || !facts_.total_prints) {
+    const auto prints = prints_of_earlier_run();
+    if (!prints) {
         return false;
     }
-    const std::uint32_t prints = *facts_.total_prints - *run.total_before;
+    const OpenRun& run = *plan_.open;
     const std::uint64_t least = (number_before_count_ - run.first).value(); // without the print in progress
     const std::uint64_t most = (mail_.last_printed - run.first).value() + 1;
-    return prints > most || (prints != 0 && prints < least); // 0: it does not move
+    return *prints > most || (*prints != 0 && *prints < least); // 0: it does not move
+}
+
+std::optional<std::uint32_t> Feeder::prints_of_earlier_run() const {
+    const OpenRun& run = *plan_.open;
+    if (!run.total_before || !facts_.total_prints) {
+        return std::nullopt;
+    }
+    return *facts_.total_prints - *run.total_before;
+}
+
+/// The counter, if it moves, has borne out what was reported before it was asked. Since then the number may have become
+/// that of another job.
+RecordNumber Feeder::surely_printed() const {
+    const bool counted = prints_of_earlier_run().value_or(0) != 0;
+    const bool finished = !counted && mail_.last_print_finished;
+    const RecordNumber reported = counted ? number_before_count_ : mail_.last_printed;
+    return finished ? reported : reported.previous();
 }
 
 /// The ledger has adopted the earlier run: printing goes on where it is.
 void Feeder::taken_over(RecordRange range, RecordNumber durable_through, Instant now, Actions& out) {
     const OpenRun& run = *plan_.open;
-    confirmed_through_ = mail_.last_print_finished ? mail_.last_printed : mail_.last_printed.previous();
-    confirmed_through_ = reported_through_ = std::max(confirmed_through_, run.printed_through);
+    reported_through_ = mail_.last_print_finished ? mail_.last_printed : mail_.last_printed.previous();
+    reported_through_ = std::max(reported_through_, confirmed_through_);
     refill_.resume(range, RecordCount{mail_.depth}, durable_through, taken_sent_through_, mail_.last_printed);
     total_before_ = run.total_before;
+    doubt_number(); // behind what the ledger has adopted
     left_over_ = run.last_printed_before;
     left_over_passed_ = true;
+    supply_noticed_ = true; // the pages are on their way: no reason for a warning yet
     enter(Phase::printing, now, Duration::max());
     pacing_.restart(now, refill_.printed_through() - range.first().previous());
     out.push_back(Notice{NoticeCode::taken_over, {}});

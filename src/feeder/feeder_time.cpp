@@ -21,7 +21,7 @@ void Feeder::enter(Phase phase, Instant now, Duration timeout) {
 void Feeder::ask(Parameter what, Instant now, Actions& out) {
     if (what == Parameter::SM) {
         const std::size_t newest = (mail_oldest_ + static_cast<std::size_t>(mail_outstanding_)) % mail_asked_.size();
-        mail_asked_[newest] = {now, ++mail_outstanding_};
+        mail_asked_[newest] = {now, ++mail_outstanding_, refill_.sent_through()};
         mail_due_ = now + pacing_.poll_interval(refill_.level());
     }
     if (what == Parameter::RS) {
@@ -45,6 +45,8 @@ void Feeder::mail_answered(Instant now) {
 
 void Feeder::forget_oldest_mail() {
     if (mail_outstanding_ > 0) {
+        surely_received_ = sent_before_inquiry_;
+        sent_before_inquiry_ = mail_asked_[mail_oldest_].sent_through;
         mail_oldest_ = (mail_oldest_ + 1) % mail_asked_.size();
         --mail_outstanding_;
     }

@@ -1,5 +1,7 @@
 #include "feeder/outcome.hpp"
 
+#include "feeder/mailing_error.hpp"
+
 namespace linefeed::feeder {
 
 std::string_view to_string(OutcomeCode code) {
@@ -42,6 +44,8 @@ std::string_view to_string(OutcomeCode code) {
         return "unreachable";
     case OutcomeCode::records_in_doubt:
         return "records_in_doubt";
+    case OutcomeCode::ran_dry:
+        return "ran_dry";
     case OutcomeCode::storage_failed:
         return "storage_failed";
     }
@@ -73,6 +77,16 @@ std::string not_ready(protocol::MachineState machine) {
     assertion_failed("MachineState", __FILE__, __LINE__);
 }
 
+/// What linefeed knows of an error that comes from mailing; empty = nothing.
+std::string cause_of(const protocol::PrinterError& error) {
+    namespace codes = protocol::error_code;
+    if (is_error(error, codes::number_wrong) || is_error(error, codes::number_not_consecutive)) {
+        return ": a record was lost on the line, or another program has sent one; if it comes before the first print, "
+               "this printer wants a new sequence to begin with number 0, which linefeed does not do";
+    }
+    return {};
+}
+
 } // namespace
 
 std::string describe(const Outcome& outcome) {
@@ -86,7 +100,7 @@ std::string describe(const Outcome& outcome) {
     case OutcomeCode::stopped_at_printer:
         return "printing was stopped at the printer";
     case OutcomeCode::printer_error:
-        return "the printer reports error " + protocol::describe(outcome.error);
+        return "the printer reports error " + protocol::describe(outcome.error) + cause_of(outcome.error);
     case OutcomeCode::not_ready:
         return not_ready(outcome.machine);
     case OutcomeCode::cover_open:
@@ -120,6 +134,8 @@ std::string describe(const Outcome& outcome) {
         return "the printer cannot be reached";
     case OutcomeCode::records_in_doubt:
         return "nobody knows whether some records were printed: an operator must decide";
+    case OutcomeCode::ran_dry:
+        return "the printer ran empty, because the records were read more slowly than the line prints them";
     case OutcomeCode::storage_failed:
         return "the print ledger could not be written: the line is stopped";
     }

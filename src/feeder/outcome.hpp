@@ -31,6 +31,7 @@ enum class OutcomeCode {
     link_lost,          ///< the connection broke
     unreachable,        ///< there never was a connection
     records_in_doubt,   ///< nobody knows whether some records were printed
+    ran_dry,            ///< the printer ran empty: records were not at hand in time
     storage_failed,     ///< the ledger cannot be written
 };
 

@@ -57,6 +57,7 @@ Verdict by_counter(const OpenRun& run, const Evidence& evidence) {
 enum class CounterSays {
     agrees,
     more_was_printed, ///< something else was printed besides
+    one_less,         ///< the print that was broken off is not counted, or the numbers have skipped a record
     too_few,          ///< the numbers have skipped records
     nothing,          ///< it is not reported, or does not move
 };
@@ -71,11 +72,14 @@ CounterSays compare_counter(const OpenRun& run, const Evidence& evidence, Record
     if (*prints > claimed) {
         return CounterSays::more_was_printed;
     }
-    // A print that was started and not finished may or may not have been counted.
-    if (*prints == claimed || (*prints + 1 == claimed && !evidence.mail.last_print_finished)) {
+    if (*prints == claimed) {
         return CounterSays::agrees;
     }
-    return *prints == 0 ? CounterSays::nothing : CounterSays::too_few;
+    if (*prints == 0) {
+        return CounterSays::nothing;
+    }
+    const bool one_less = *prints + std::uint64_t{1} == claimed && !evidence.mail.last_print_finished;
+    return one_less ? CounterSays::one_less : CounterSays::too_few;
 }
 
 /// The number behind the last record: the blank end marker has it, which is sent when all records are.
@@ -88,6 +92,14 @@ Verdict printed_as_reported(const OpenRun& run, const Evidence& evidence, Basis 
     const RecordNumber reported = evidence.mail.last_printed;
     return is_marker_number(run, reported) ? printed_through(run, run.issued_through, true, basis)
                                            : printed_through(run, reported, evidence.mail.last_print_finished, basis);
+}
+
+/// No record behind the reported one is printed. Up to it one may have been skipped.
+Verdict doubtful_as_reported(const OpenRun& run, RecordNumber reported) {
+    const RecordNumber last = std::min(reported, run.issued_through); // not that of the end marker
+    return {.in_doubt = behind(run.printed_through, last),
+            .unused = behind(last, run.issued_through),
+            .basis = Basis::mail_status};
 }
 
 /// Nothing of the run is confirmed, and the printer reports the number that it had before the run. Either no record was
@@ -134,12 +146,51 @@ Verdict by_number(const OpenRun& run, const Evidence& evidence) {
         return printed_as_reported(run, evidence, Basis::mail_status_and_counter);
     case CounterSays::nothing:
         return printed_as_reported(run, evidence, Basis::mail_status);
-    case CounterSays::too_few: // A stop has emptied the FIFO, and the printer went on behind what it had thrown away.
-        return all_in_doubt(run);
+    case CounterSays::one_less:
+        return evidence.uninterrupted && !evidence.restart_unseen
+                   ? printed_as_reported(run, evidence, Basis::mail_status_and_counter)
+                   : doubtful_as_reported(run, evidence.mail.last_printed);
+    case CounterSays::too_few:          // A stop has emptied the FIFO, and it went on behind what it had thrown away.
     case CounterSays::more_was_printed: // Is this number still ours?
-        return evidence.uninterrupted ? printed_as_reported(run, evidence, Basis::mail_status) : all_in_doubt(run);
+        return all_in_doubt(run);
     }
     assertion_failed("CounterSays", __FILE__, __LINE__);
+}
+
+Verdict without_broken_off(const Verdict& verdict, RecordNumber broken_off) {
+    if (!verdict.printed.contains(broken_off)) {
+        return verdict;
+    }
+    Verdict doubtful = verdict;
+    doubtful.printed = RecordRange{verdict.printed.first(), broken_off - verdict.printed.first()};
+    doubtful.in_doubt =
+        behind(broken_off.previous(), verdict.in_doubt.empty() ? verdict.printed.last() : verdict.in_doubt.last());
+    return doubtful;
+}
+
+Verdict by_all_evidence(const OpenRun& run, const Evidence& evidence) {
+    if (run.issued_through == run.printed_through) {
+        Verdict verdict;
+        verdict.basis = Basis::nothing_issued;
+        return verdict;
+    }
+    const bool of_another = evidence.fed_by_another && prints_since(run, evidence) != 0U; // if anything is printed
+    if (is_another_printer(run, evidence.printer) || of_another) {
+        return all_in_doubt(run);
+    }
+    if (evidence.end_message && compare_counter(run, evidence, run.issued_through) != CounterSays::too_few) {
+        return printed_through(run, run.issued_through, true, Basis::end_message);
+    }
+    const RecordNumber reported = evidence.mail.last_printed;
+    if (reported == RecordNumber{}) {
+        return without_number(run, evidence);
+    }
+    if (run.printed_through < run.first && reported == run.last_printed_before) {
+        return by_left_over_number(run, evidence);
+    }
+    const RecordNumber least = std::max(run.first, run.printed_through);
+    const bool within = least <= reported && reported <= run.issued_through;
+    return within || is_marker_number(run, reported) ? by_number(run, evidence) : all_in_doubt(run);
 }
 
 } // namespace
@@ -175,27 +226,7 @@ std::ostream& operator<<(std::ostream& out, const Verdict& verdict) {
 Verdict reconcile(const OpenRun& run, const Evidence& evidence) {
     LINEFEED_ASSERT(run.first.value() > 0 && run.first.previous() <= run.printed_through);
     LINEFEED_ASSERT(run.printed_through <= run.issued_through);
-    if (run.issued_through == run.printed_through) {
-        Verdict verdict;
-        verdict.basis = Basis::nothing_issued;
-        return verdict;
-    }
-    if (is_another_printer(run, evidence.printer)) {
-        return all_in_doubt(run);
-    }
-    if (evidence.end_message) {
-        return printed_through(run, run.issued_through, true, Basis::end_message);
-    }
-    const RecordNumber reported = evidence.mail.last_printed;
-    if (reported == RecordNumber{}) {
-        return without_number(run, evidence);
-    }
-    if (run.printed_through < run.first && reported == run.last_printed_before) {
-        return by_left_over_number(run, evidence);
-    }
-    const RecordNumber least = std::max(run.first, run.printed_through);
-    const bool within = least <= reported && reported <= run.issued_through;
-    return within || is_marker_number(run, reported) ? by_number(run, evidence) : all_in_doubt(run);
+    return without_broken_off(by_all_evidence(run, evidence), evidence.broken_off);
 }
 
 } // namespace linefeed::feeder

@@ -58,6 +58,13 @@ struct Evidence {
     /// The printer was stopped and started again while records were on their way to it: it may have thrown some away
     /// and gone on behind them. Its number counts only if the total print counter agrees.
     bool restarted = false;
+    /// No stop point stood all the time, so such a restart may have gone unseen.
+    bool restart_unseen = false;
+    /// It has reported what was never sent, or had no room for what was: somebody else feeds it, so no number is surely
+    /// ours.
+    bool fed_by_another = false;
+    /// A print that had not finished when the printer stood; 0 = none. A number behind it does not make it whole.
+    RecordNumber broken_off{};
 
     friend bool operator==(const Evidence&, const Evidence&) = default;
 };

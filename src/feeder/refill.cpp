@@ -28,6 +28,13 @@ void Refill::resume(RecordRange range, RecordCount depth, RecordNumber durable_t
     check();
 }
 
+void Refill::end_at(RecordNumber last) {
+    LINEFEED_ASSERT(range_.contains(last) && supplied_through_ <= last && durable_through_ <= last);
+    range_ = RecordRange::closed(range_.first(), last);
+    intent_asked_ = std::min(intent_asked_, last);
+    check();
+}
+
 void Refill::supplied(RecordNumber through) {
     supplied_through_ = std::max(supplied_through_, std::min(through, range_.last()));
     check();
@@ -48,10 +55,17 @@ bool Refill::printed(RecordNumber through) {
     return true;
 }
 
+RecordNumber Refill::bound() const {
+    return std::min({range_.last(), supplied_through_, durable_through_});
+}
+
 RecordCount Refill::ready() const {
-    const RecordNumber bound = std::min({range_.last(), supplied_through_, durable_through_});
     const RecordCount credit = depth_ - std::min(depth_, level());
-    return bound <= sent_through_ ? RecordCount{0} : std::min(bound - sent_through_, credit);
+    return bound() <= sent_through_ ? RecordCount{0} : std::min(bound() - sent_through_, credit);
+}
+
+bool Refill::starved() const {
+    return bound() <= sent_through_ && !all_sent();
 }
 
 RecordRange Refill::take() {

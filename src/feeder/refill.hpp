@@ -26,6 +26,9 @@ public:
     void resume(RecordRange range, RecordCount depth, RecordNumber durable_through, RecordNumber sent_through,
                 RecordNumber printed_through);
 
+    /// The run ends with `last`, before the end of its range. Precondition: nothing behind it was supplied.
+    void end_at(RecordNumber last);
+
     /// Records up to `through` are in memory.
     void supplied(RecordNumber through);
     /// Intents up to `through` are durable.
@@ -51,9 +54,13 @@ public:
     /// At most so many records are in the printer.
     [[nodiscard]] RecordCount level() const { return sent_through_ - printed_through_; }
     [[nodiscard]] bool all_sent() const { return sent_through_ == range_.last(); }
+    /// All that is at hand and durable was sent, and it was not all.
+    [[nodiscard]] bool starved() const;
 
 private:
     void check() const;
+    /// No record behind this one may go out.
+    [[nodiscard]] RecordNumber bound() const;
 
     RecordRange range_;
     RecordCount depth_;

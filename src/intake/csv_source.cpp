@@ -169,6 +169,11 @@ Result<bool> CsvSource::next(Row& row) {
     return true;
 }
 
+/// A record is a byte and a line break at least, the last perhaps without.
+std::uint64_t CsvSource::most_rows() const {
+    return file_.size() / 2 + 1;
+}
+
 double CsvSource::progress() const {
     return std::min(1.0, static_cast<double>(reader_.offset()) / static_cast<double>(file_.size()));
 }

@@ -14,6 +14,7 @@ public:
 
     [[nodiscard]] Result<bool> next(Row& row) override;
     [[nodiscard]] const std::vector<std::string>& column_names() const override { return names_; }
+    [[nodiscard]] std::uint64_t most_rows() const override;
     [[nodiscard]] double progress() const override;
 
 private:

@@ -29,7 +29,7 @@ struct BadRow {
 
 struct ImportReport {
     std::uint64_t rows = 0;     ///< read
-    std::uint64_t records = 0;  ///< stored
+    std::uint64_t records = 0;  ///< stored, or on the way to the spool
     std::uint64_t bad_rows = 0; ///< not stored
     std::uint64_t rows_with_empty_field =
         0;                              ///< stored; the printer may show its placeholder for an empty text (Annex B)
@@ -45,6 +45,8 @@ struct ImportOptions {
     protocol::RecordProperties properties;
     /// Leave bad rows out instead of refusing the import. The records that remain are numbered without gaps.
     bool skip_bad = false;
+    /// Asked behind each record: true closes the page although it is not full.
+    std::function<bool()> close_page{};
     /// Called now and then; returning false cancels the import, which then fails with FailureKind::stopped.
     std::function<bool(const ImportReport&, double progress)> on_progress;
 };
@@ -61,6 +63,13 @@ struct ImportOutcome {
 /// read; with FailureKind::storage if the spool cannot take it; nothing is stored then.
 [[nodiscard]] Result<ImportOutcome> import_source(RowSource& source, spool::Spool& spool, const spool::JobSpec& spec,
                                                   const ImportOptions& options);
+
+/// A file that grew or was replaced while it was read gives a job that is neither the old nor the new one:
+/// FailureKind::input if it is not as `before` says. A file that is gone was read to its end all the same.
+[[nodiscard]] Result<void> check_unchanged(const spool::SourceFingerprint& before);
+
+/// What is known of a source before its first row.
+[[nodiscard]] ImportReport empty_report(const RowSource& source, const ImportOptions& options);
 
 /// The report as JSON: {"rows":…,"records":…,"bad_rows":…,"columns":[{"name":…,"encoding":…}],
 /// "reported":[{"line":…,"column":…,"reason":…}]}.

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -48,6 +49,8 @@ public:
     [[nodiscard]] virtual Result<bool> next(Row& row) = 0;
     /// Names of the chosen columns in order ("column 1" … for a CSV file without header).
     [[nodiscard]] virtual const std::vector<std::string>& column_names() const = 0;
+    /// No more rows than this can be records.
+    [[nodiscard]] virtual std::uint64_t most_rows() const { return std::numeric_limits<std::uint64_t>::max(); }
     /// How much of the source has been read, 0…1; for progress.
     [[nodiscard]] virtual double progress() const = 0;
 };

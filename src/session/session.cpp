@@ -181,6 +181,12 @@ void Session::on_granted(RecordRange range, RecordNumber durable_through, Instan
     }
 }
 
+void Session::on_end_known(RecordNumber last, Instant now, Effects& out) {
+    Actions actions;
+    feeder_.on_end_known(last, now, actions);
+    carry_out(actions, now, out);
+}
+
 void Session::on_refused(feeder::OutcomeCode why, Instant now, Effects& out) {
     Actions actions;
     feeder_.on_refused(why, actions);

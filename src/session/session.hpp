@@ -72,6 +72,7 @@ public:
     void on_closed(Instant now, Effects& out);
 
     void on_granted(RecordRange range, RecordNumber durable_through, Instant now, Effects& out);
+    void on_end_known(RecordNumber last, Instant now, Effects& out);
     void on_refused(feeder::OutcomeCode why, Instant now, Effects& out);
     void on_durable(RecordNumber through, Instant now, Effects& out);
     void on_settled(Instant now, Effects& out);

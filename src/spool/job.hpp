@@ -35,7 +35,9 @@ struct JobSpec {
 };
 
 enum class ImportState {
-    importing, ///< pages are being added; removed when the spool is opened again
+    importing, ///< pages are being added. If that is broken off, the job goes when the spool is opened again, unless it
+               ///< stands in the ledger: then the import can go on
+    stopped,   ///< a bad row has ended the import while the records before it were being printed
     ready,     ///< complete and immutable
 };
 
@@ -44,8 +46,8 @@ struct Job {
     JobId id{};
     JobSpec spec;
     ImportState state = ImportState::importing;
-    RecordRange records;        ///< base + 1 … base + count
-    std::string content_sha256; ///< of all frames in order, hex; empty while importing
+    RecordRange records;        ///< base + 1 … base + count; so far, while importing
+    std::string content_sha256; ///< of all frames in order, hex; empty while more may come
     std::uint64_t frame_bytes = 0;
     std::int64_t created_ns = 0; ///< wall time, ns since the Unix epoch
     std::string import_report;   ///< JSON: bad rows that were left out

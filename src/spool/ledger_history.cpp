@@ -33,14 +33,33 @@ void LedgerHistory::add(const LedgerRow& row) {
     const auto state = state_after(row.entry.kind);
     const RunId run = row.entry.run;
     const auto last_report = last_report_ns_.try_emplace(run, row.time_ns).first->second;
-    if (row.entry.kind != LedgerKind::intent) {
+    if (row.entry.kind == LedgerKind::printed) {
         last_report_ns_[run] = row.time_ns;
     }
     if (!state || row.entry.range.empty()) {
         return;
     }
+    const std::vector<HistoryStretch> settled = in_doubt_within(row.entry.range);
     cut_out(row.entry.range);
     by_first_[row.entry.range.first()] = {row.entry.range, *state, run, last_report, row.time_ns, row.entry.evidence};
+    for (const HistoryStretch& doubt : settled) {
+        cut_out(doubt.range);
+        by_first_[doubt.range.first()] = {doubt.range, *state, run, doubt.from_ns, doubt.to_ns, row.entry.evidence};
+    }
+}
+
+/// Whoever settles a doubt later does not know better when the records were printed.
+std::vector<HistoryStretch> LedgerHistory::in_doubt_within(RecordRange range) const {
+    std::vector<HistoryStretch> found;
+    for (auto it = by_first_.begin(); it != by_first_.end() && it->first <= range.last(); ++it) {
+        HistoryStretch stretch = it->second;
+        if (stretch.state == RecordState::in_doubt && stretch.range.last() >= range.first()) {
+            stretch.range = RecordRange::closed(std::max(stretch.range.first(), range.first()),
+                                                std::min(stretch.range.last(), range.last()));
+            found.push_back(stretch);
+        }
+    }
+    return found;
 }
 
 /// Shortens, splits or removes what is known about `range`.

@@ -32,9 +32,10 @@ public:
 
 private:
     void cut_out(RecordRange range);
+    [[nodiscard]] std::vector<HistoryStretch> in_doubt_within(RecordRange range) const;
 
     std::map<RecordNumber, HistoryStretch> by_first_;
-    std::map<RunId, std::int64_t> last_report_ns_; ///< time of the last row about the run's printing
+    std::map<RunId, std::int64_t> last_report_ns_; ///< time of the run's begin, or of the last printed row
 };
 
 } // namespace linefeed::spool

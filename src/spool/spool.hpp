@@ -29,7 +29,8 @@ struct SpoolOptions {
 };
 
 /// A job's place in the spool while it is imported. Pages come in order; commit() makes the job ready in one step;
-/// without it the job vanishes (now, or when the spool is opened again after a crash). Must not outlive its Spool.
+/// without it the job vanishes (now, or when the spool is opened again after a crash), unless some of its records were
+/// granted to a run meanwhile: then the import can be resumed. Must not outlive its Spool.
 class Spool;
 class JobImport {
 public:
@@ -37,15 +38,25 @@ public:
     JobImport& operator=(JobImport&&) noexcept;
     JobImport(const JobImport&) = delete;
     JobImport& operator=(const JobImport&) = delete;
-    /// Removes the job unless committed.
+    /// Removes the job unless it is committed or stands in the ledger.
     ~JobImport();
 
     [[nodiscard]] JobId id() const;
-    /// Precondition: page.first follows the last page (base + 1 for the first), page not empty.
+    /// Precondition: page.first follows the last page (base + 1 for the first), page not empty. A record that the job
+    /// has already must be the same: FailureKind::input otherwise.
     [[nodiscard]] Result<void> add(const RecordPage& page);
+    /// Writes what was added, durably: these records may be printed.
+    [[nodiscard]] Result<void> flush();
+    /// The records that a power failure leaves in the job.
+    [[nodiscard]] RecordRange durable() const;
+    /// How many records were added, those that were there already included.
+    [[nodiscard]] RecordCount added() const;
     /// Makes the job ready, durably. `import_report` is JSON (may be empty). Fails with FailureKind::input if no page
-    /// was added.
+    /// was added, or fewer records than the job has.
     [[nodiscard]] Result<Job> commit(std::string import_report);
+    /// No record follows, because the next row is bad: the job is left as ImportState::stopped, durably. Fails as
+    /// commit(). Nothing is added after it.
+    [[nodiscard]] Result<Job> stop(std::string import_report);
 
 private:
     friend class Spool;
@@ -71,7 +82,13 @@ public:
     ~Spool();
 
     // Jobs
-    [[nodiscard]] Result<JobImport> begin_import(const JobSpec& spec);
+    /// `import_report` is JSON, what is known before the first record; it may be empty.
+    [[nodiscard]] Result<JobImport> begin_import(const JobSpec& spec, std::string import_report = {});
+    /// Goes on with an import that was broken off or stopped; `source` is what the file is like now. All pages come
+    /// once more, from the first: those that the job has are compared.
+    [[nodiscard]] Result<JobImport> resume_import(const Job& job, const SourceFingerprint& source);
+    /// The jobs whose import was broken off or stopped when records of them had been granted to a run, oldest first.
+    [[nodiscard]] Result<std::vector<Job>> unfinished_jobs();
     [[nodiscard]] Result<std::vector<Job>> jobs();
     [[nodiscard]] Result<std::optional<Job>> job(JobId id);
     /// The ready job that was imported from exactly this source with this layout.

@@ -25,8 +25,10 @@ Result<Job> job_from(const Statement& row, const std::string& path) {
     }
     job.spec.base = base->first();
     job.records = *range;
-    job.state = state == "ready" ? ImportState::ready : ImportState::importing;
     job.content_sha256 = row.text(10);
+    job.state = state == "ready"             ? ImportState::ready
+                : job.content_sha256.empty() ? ImportState::importing
+                                             : ImportState::stopped;
     job.frame_bytes = static_cast<std::uint64_t>(row.number(11));
     job.created_ns = row.number(12);
     job.import_report = row.text(13);
@@ -127,13 +129,20 @@ Result<std::vector<Job>> Spool::find_by_path(const std::string& path) {
     return read_jobs(statement->bind(1, path), state_->database->path());
 }
 
-Result<void> Spool::update_source(JobId id, const SourceFingerprint& source) {
-    if (auto writable = state_->check_writable(); !writable) {
-        return writable;
+Result<std::vector<Job>> Spool::unfinished_jobs() {
+    static const std::string sql =
+        std::string{select_jobs} +
+        "WHERE state = 'importing' AND EXISTS (SELECT 1 FROM ledger WHERE ledger.job = jobs.id) ORDER BY id";
+    auto statement = state_->database->prepare(sql.c_str());
+    if (!statement) {
+        return statement.error();
     }
-    auto statement =
-        state_->database->prepare("UPDATE jobs SET source_path = ?2, source_size = ?3, source_modified_ns = ?4, "
-                                  "source_inode = ?5, source_companion = ?6 WHERE id = ?1");
+    return read_jobs(*statement, state_->database->path());
+}
+
+Result<void> Spool::State::write_source(JobId id, const SourceFingerprint& source) {
+    auto statement = database->prepare("UPDATE jobs SET source_path = ?2, source_size = ?3, source_modified_ns = ?4, "
+                                       "source_inode = ?5, source_companion = ?6 WHERE id = ?1");
     if (!statement) {
         return statement.error();
     }
@@ -143,29 +152,38 @@ Result<void> Spool::update_source(JobId id, const SourceFingerprint& source) {
         .bind(4, source.modified_ns)
         .bind(5, static_cast<std::int64_t>(source.inode))
         .bind(6, source.companion);
-    if (auto done = statement->run(); !done) {
+    return statement->run();
+}
+
+Result<void> Spool::update_source(JobId id, const SourceFingerprint& source) {
+    if (auto writable = state_->check_writable(); !writable) {
+        return writable;
+    }
+    if (auto done = state_->write_source(id, source); !done) {
         return state_->failed_write(done.error());
     }
     return {};
+}
+
+Result<bool> Spool::State::stands_in_ledger(JobId id) {
+    auto rows = database->prepare("SELECT 1 FROM ledger WHERE job = ?1 LIMIT 1");
+    if (!rows) {
+        return rows.error();
+    }
+    return rows->bind(1, static_cast<std::int64_t>(id)).step();
 }
 
 Result<void> Spool::remove_job(JobId id) {
     if (auto writable = state_->check_writable(); !writable) {
         return writable;
     }
-    {
-        auto rows = state_->database->prepare("SELECT 1 FROM ledger WHERE job = ?1 LIMIT 1");
-        if (!rows) {
-            return rows.error();
-        }
-        const auto used = rows->bind(1, static_cast<std::int64_t>(id)).step();
-        if (!used) {
-            return used.error();
-        }
-        if (*used) {
-            return Failure{FailureKind::usage, "job " + std::to_string(static_cast<std::int64_t>(id)) +
-                                                   " stands in the print ledger: it cannot be removed"};
-        }
+    const auto used = state_->stands_in_ledger(id);
+    if (!used) {
+        return used.error();
+    }
+    if (*used) {
+        return Failure{FailureKind::usage, "job " + std::to_string(static_cast<std::int64_t>(id)) +
+                                               " stands in the print ledger: it cannot be removed"};
     }
     state_->ledgers.erase(static_cast<std::int64_t>(id));
     if (auto done = state_->remove_job_in_steps(id); !done) {
@@ -212,7 +230,8 @@ Result<void> Spool::State::remove_job_in_steps(JobId id) {
 
 Result<void> Spool::State::remove_unfinished_imports() {
     while (true) {
-        const auto id = database->query_number("SELECT id FROM jobs WHERE state = 'importing' LIMIT 1");
+        const auto id = database->query_number("SELECT id FROM jobs WHERE state = 'importing' AND NOT EXISTS "
+                                               "(SELECT 1 FROM ledger WHERE ledger.job = jobs.id) LIMIT 1");
         if (!id) {
             return id.error();
         }

@@ -28,9 +28,12 @@ Failure contradiction(JobId job, const LedgerEntry& entry, std::string_view why)
     return {FailureKind::internal, text.str()};
 }
 
-/// Whether the records of a row are records of the job.
-bool lies_within(const RecordRange& range, const RecordRange& records) {
-    return range.empty() || (records.contains(range.first()) && records.contains(range.last()));
+/// Whether the records of a row are records of the job. A run that begins while the job is imported may mean to print
+/// records that are still to come; nothing else may be said of them.
+bool lies_within(const LedgerEntry& entry, const JobLedger& ledger) {
+    const bool open_end = entry.kind == LedgerKind::run_started && !ledger.complete;
+    return entry.range.empty() ||
+           (ledger.records.contains(entry.range.first()) && (open_end || ledger.records.contains(entry.range.last())));
 }
 
 } // namespace
@@ -100,7 +103,8 @@ Result<JobLedger*> Spool::State::job_ledger(JobId id) {
     if (const auto cached = ledgers.find(key); cached != ledgers.end()) {
         return &cached->second;
     }
-    auto statement = database->prepare("SELECT base + 1, records FROM jobs WHERE id = ?1 AND state = 'ready'");
+    auto statement = database->prepare(
+        "SELECT base + 1, records, state = 'ready' FROM jobs WHERE id = ?1 AND (state = 'ready' OR records > 0)");
     if (!statement) {
         return statement.error();
     }
@@ -112,6 +116,7 @@ Result<JobLedger*> Spool::State::job_ledger(JobId id) {
     if (!records) {
         return Failure{FailureKind::internal, "there is no job " + std::to_string(key) + " ready to print"};
     }
+    const bool complete = statement->number(2) != 0;
     auto state = read_segments(id);
     if (!state) {
         return state.error();
@@ -119,7 +124,7 @@ Result<JobLedger*> Spool::State::job_ledger(JobId id) {
     if (ledgers.size() >= max_cached_ledgers) {
         ledgers.clear();
     }
-    return &ledgers.insert_or_assign(key, JobLedger{*records, std::move(*state), RunId{}}).first->second;
+    return &ledgers.insert_or_assign(key, JobLedger{*records, complete, std::move(*state), RunId{}}).first->second;
 }
 
 Result<bool> Spool::State::is_run_of(JobLedger& ledger, JobId job, RunId run) {
@@ -143,7 +148,10 @@ Result<void> Spool::State::append_rows(JobId job, std::span<const LedgerEntry> e
         return writable;
     }
     const auto checked = check_rows(job, entries);
-    return checked ? append_checked({&*checked, 1}) : checked.error();
+    if (!checked) {
+        return checked.error();
+    }
+    return append_checked({&*checked, 1});
 }
 
 Result<Spool::State::CheckedRows> Spool::State::check_rows(JobId job, std::span<const LedgerEntry> entries) {
@@ -162,7 +170,7 @@ Result<Spool::State::CheckedRows> Spool::State::check_rows(JobId job, std::span<
                 return contradiction(job, entry, "the job has no such run");
             }
         }
-        if (!lies_within(entry.range, (*ledger)->records)) {
+        if (!lies_within(entry, **ledger)) {
             return contradiction(job, entry, "the job does not have these records");
         }
         if (!after.apply(entry)) {

@@ -11,7 +11,8 @@ namespace linefeed::spool {
 
 /// Of one job, what append() needs at hand. Always what is durable, never ahead of it.
 struct JobLedger {
-    RecordRange records; ///< of the job
+    RecordRange records;   ///< of the job, so far
+    bool complete = false; ///< more records may come otherwise
     LedgerState state;
     RunId known_run{}; ///< a run that is known to belong to the job
 };
@@ -36,6 +37,11 @@ struct Spool::State {
     /// transaction and the spool can go on. Returns `failure`.
     Failure failed_write(Failure failure);
 
+    [[nodiscard]] Result<RecordPage> read_page(JobId id, RecordNumber number);
+    [[nodiscard]] Result<void> write_source(JobId id, const SourceFingerprint& source);
+    /// Whether any record of the job was ever granted to a run.
+    [[nodiscard]] Result<bool> stands_in_ledger(JobId id);
+    /// Removes imports that were broken off before anything of them was printed.
     [[nodiscard]] Result<void> remove_unfinished_imports();
     /// Removes a job and its pages in steps of bounded size. A crash in between leaves an unfinished import, removed
     /// later.

@@ -13,7 +13,7 @@ MAY_USE = {
     "spool": {"base"},
     "intake": {"base", "protocol", "spool"},
     "simulator": {"base", "protocol"},
-    "daemon": {"base", "protocol", "feeder", "session", "link", "spool"},
+    "daemon": {"base", "protocol", "feeder", "session", "link", "spool", "intake"},
     "cli": {"base", "protocol", "feeder", "session", "link", "spool", "intake", "daemon"},
 }
 

@@ -31,8 +31,9 @@ class Result:
         self.code, self.out, self.err = code, out, err
 
     # What stderr may hold besides the one line that says what is wrong: progress, notices, and the sum of bad rows.
-    CONTEXT = re.compile(r"linefeed: (imported \d+ records|importing +\d|printing( +\d|$)|acknowledged|stopping the line$|nothing is imported: "
-                         r"|the printer (reports (?!error )|(was|is) still printing|does not keep the stop point)|opening the nozzle)")
+    CONTEXT = re.compile(r"linefeed: (imported \d+ records|importing +\d|importing .* as job \d+ while it is printed$|printing( +\d| +record \d|$)|acknowledged|stopping the line$|nothing is imported: "
+                         r"|the printer (reports (?!error )|(was|is) still printing|does not keep the stop point)|opening the nozzle|the printer runs empty soon: "
+                         r"|the file ends with record \d+, before --to$)")
 
     @property
     def errors(self):

@@ -90,7 +90,7 @@ void Judge::will_reprint(RecordRange range) {
 bool Judge::unbroken(RecordNumber first, RecordNumber last) const {
     for (std::uint64_t number = first.value(); number <= last.value(); ++number) {
         const Product& it = products_[number - context_.scenario.first()];
-        if (it.complete == 0 && it.aborted == 0) {
+        if (it.complete == 0 && (it.aborted == 0 || number < last.value())) {
             return false;
         }
     }

@@ -27,7 +27,7 @@ public:
     // The operator's decisions about records in doubt
     void will_skip(RecordRange range);
     void will_reprint(RecordRange range);
-    /// The products show the records from `first` to `last` without a jump.
+    /// The products show the records from `first` to `last` without a jump; of the last it may be a part.
     [[nodiscard]] bool unbroken(RecordNumber first, RecordNumber last) const;
     /// He takes the record, of which the last product carries a part, for printed.
     void accepts_part(RecordNumber number);

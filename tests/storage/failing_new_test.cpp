@@ -100,8 +100,14 @@ protected:
         std::uint64_t failed = 0;
         std::string problem;
         std::uint64_t k = 0;
-        EXPECT_FALSE(start_with_fault(run, UINT64_MAX, false)); // whatever is made once in a process is there now
+        // Whatever is made once in a process is there behind a whole run and one that leaves records open.
+        EXPECT_FALSE(start_with_fault(run, UINT64_MAX, false));
         EXPECT_EQ(judge.judge(), "");
+        const std::uint64_t in_mid_run = failing_new.calls * 3 / 4;
+        disk.load({});
+        run.reset();
+        EXPECT_TRUE(start_with_fault(run, in_mid_run, true));
+        EXPECT_EQ(judge.judge_after_exception(), "");
         for (bool reached = true; reached && problem.empty(); ++k) {
             disk.load({});
             run.reset();

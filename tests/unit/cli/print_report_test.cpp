@@ -176,7 +176,7 @@ TEST(ShowBadRows, shouldNameEveryRowAndSayWhatToDo) {
     intake::ImportReport rows{
         10, 8, 2, 0, {}, {}, {{3, "name", "character 2 is U+0009 (TAB)"}, {7, "", "4 fields instead of 3"}}};
     testing::internal::CaptureStderr();
-    show_bad_rows(rows, "names.csv", true, false);
+    show_bad_rows(rows, "names.csv", true, nullptr, false);
     EXPECT_EQ(testing::internal::GetCapturedStderr(),
               "linefeed: names.csv: line 3, column name: character 2 is U+0009 (TAB)\n"
               "linefeed: names.csv: line 7: 4 fields instead of 3\n"
@@ -187,7 +187,7 @@ TEST(ShowBadRows, shouldNameEveryRowAndSayWhatToDo) {
 TEST(ShowBadRows, shouldCountWhatItDoesNotName) {
     intake::ImportReport rows{10, 5, 5, 0, {}, {}, {{3, "name", "bad"}}};
     testing::internal::CaptureStderr();
-    show_bad_rows(rows, "names.csv", false, false);
+    show_bad_rows(rows, "names.csv", false, nullptr, false);
     EXPECT_EQ(testing::internal::GetCapturedStderr(), "linefeed: names.csv: line 3, column name: bad\n"
                                                       "linefeed: names.csv: and 4 more bad rows\n"
                                                       "linefeed: left out 5 bad rows of 10 (--skip-bad)\n");

@@ -85,8 +85,8 @@ TEST_F(StoreWorkTest, shouldGrantReadAheadAndConfirm) {
 }
 
 TEST_F(StoreWorkTest, shouldStopReadingAheadWhenTheSessionHoldsAllItCan) {
-    job_ = import_job(20, 10); // more pages than are lent
-    StoreWork store = work(closed(1, 20 * 10));
+    job_ = import_job(20, 300); // more pages than are lent
+    StoreWork store = work(closed(1, 20 * 300));
     store.take(feeder::BeginRun{});
     static_cast<void>(store.take_replies());
     std::vector<const RecordPage*> pages;
@@ -149,6 +149,22 @@ TEST_F(StoreWorkTest, shouldReadAheadFromBehindWhatATakenOverPrinterHolds) {
     ASSERT_TRUE(store.wants_read_ahead());
     store.read_ahead();
     EXPECT_EQ(only<PageReady>(store.take_replies()).page->range(), closed(501, 1000));
+}
+
+/// The store hangs in a write while the end of the job is printed: the verdict overtakes the confirmations.
+TEST_F(StoreWorkTest, shouldCallNothingUnusedThatTheFeederHasConfirmed) {
+    StoreWork store = work(closed(1, 500));
+    store.take(feeder::BeginRun{});
+    store.take(feeder::ConfirmPrinted{RecordNumber{130}, {}});
+    feeder::Settle settle;
+    settle.verdict.basis = feeder::Basis::nothing_issued;
+    settle.confirmed_through = RecordNumber{500};
+    store.take(settle);
+    store.take(feeder::ConfirmPrinted{RecordNumber{400}, {}});
+    store.take(feeder::End{});
+    EXPECT_EQ(store.failure(), "");
+    EXPECT_EQ(in_state(RecordState::printed), Ranges{closed(1, 500)});
+    EXPECT_TRUE(in_state(RecordState::unused).empty());
 }
 
 TEST_F(StoreWorkTest, shouldReadNothingWhenATakenOverPrinterHoldsTheLastRecord) {

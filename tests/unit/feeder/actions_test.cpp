@@ -105,6 +105,7 @@ constexpr std::array all_codes{
     OutcomeCode::printer_restarted, OutcomeCode::no_answer,
     OutcomeCode::link_lost,         OutcomeCode::unreachable,
     OutcomeCode::records_in_doubt,  OutcomeCode::storage_failed,
+    OutcomeCode::ran_dry,
 };
 
 TEST(Outcome, shouldHaveANameAndWordsForEveryCode) {
@@ -116,6 +117,14 @@ TEST(Outcome, shouldHaveANameAndWordsForEveryCode) {
         EXPECT_FALSE(described.empty());
         EXPECT_EQ(described.find('\n'), std::string::npos);
         EXPECT_TRUE(words.insert(described).second) << described;
+    }
+}
+
+TEST(Outcome, shouldNameTheCauseOfABreakInTheNumbers) {
+    for (const std::uint32_t code : {1018U, 1019U, 5043U}) {
+        Outcome outcome{.code = OutcomeCode::printer_error};
+        outcome.error.raw = static_cast<std::int32_t>(code);
+        EXPECT_EQ(describe(outcome).find("a record was lost on the line") != std::string::npos, code != 5043) << code;
     }
 }
 

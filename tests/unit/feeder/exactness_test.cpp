@@ -73,5 +73,26 @@ TEST_P(Exactness, shouldPrintEveryRecordOnceWithoutTheCounter) {
             GetParam());
 }
 
+TEST_P(Exactness, shouldPrintEveryRecordOnceWhileTheSourceIsRead) {
+    EXPECT_EQ(run_all({.slow_source = true}, GetParam()), 0U);
+}
+
+TEST_P(Exactness, shouldPrintEveryRecordOnceWhenEverythingGoesWrongWhileTheSourceIsRead) {
+    run_all({.link = true,
+             .host_crash = true,
+             .power = true,
+             .errors = true,
+             .operator_stops = true,
+             .requests = true,
+             .slow_source = true},
+            GetParam());
+}
+
+TEST_P(Exactness, shouldPrintEveryRecordOnceWhenRestartedWhileTheSourceIsRead) {
+    if (GetParam() != Habit::ignored) {
+        run_all({.restarts = true, .slow_source = true}, GetParam());
+    }
+}
+
 } // namespace
 } // namespace linefeed::feeder

@@ -94,6 +94,15 @@ TEST(FeederArming, shouldAskAgainForASerialNumberThatOnlyGotLost) {
     damaged.vs("S1");
     damaged.jl();
     damaged.expect("?SM");
+
+    Story nameless;
+    nameless.start();
+    nameless.rs(State::ready_to_print);
+    nameless.vs("");
+    nameless.jl();
+    nameless.take();
+    nameless.vs(""); // it has none
+    nameless.expect("?SM");
 }
 
 // Every refusal before the start.

@@ -171,9 +171,32 @@ TEST(FeederFilling, shouldAskTheCounterWhenEntriesAreMissingAndNoStopPointStands
     story.rs(State::printing);
     story.sm(2, 77, 110); // kept from now on
     story.take();
-    story.sm(1, 103, 110);
+    story.sm(0, 103, 110);
     EXPECT_NE(story.take().find("?CC; ?SM; ?SM"), std::string::npos);
     EXPECT_EQ(story.feeder.refill().printed_through(), RecordNumber{103});
+}
+
+TEST(FeederFilling, shouldNotStartWithRecordsOfSomebodyElseInThePrinter) {
+    Story story = reach(Phase::verifying);
+    story.sm(5, 77, 110);
+    story.expect("?SM");
+    story.sm(5, 77, 110);
+    story.expect("!ST; ?RS");
+    story.judge(0, 77, true, 1000);
+    EXPECT_NE(story.take().find("unused 101-104"), std::string::npos) << "nothing was printed";
+}
+
+/// As the manual's own example has it once.
+TEST(FeederFilling, shouldGetUsedToAPrinterThatCountsTheLoadedRecordToo) {
+    Story story = reach(Phase::verifying);
+    story.sm(4, 77, 110);
+    story.sm(4, 77, 110);
+    story.wait(milliseconds{4});
+    story.rs(State::printing);
+    story.take();
+    story.sm(3, 101, 110);
+    story.sm(3, 101, 110);
+    EXPECT_NE(story.take().find("=MR 105-105"), std::string::npos);
 }
 
 TEST(FeederFilling, shouldStopWhenThePrinterTakesNoRecords) {

@@ -142,6 +142,26 @@ TEST(FeederStopping, shouldNotTakeAWarningOfBeforeForTheCause) {
     EXPECT_NE(story.take().find("end: stopped_at_printer"), std::string::npos);
 }
 
+TEST(FeederStopping, shouldDoubtAPrintThatSomebodyBrokeOffBeforePrintingOn) {
+    Story story = reach(Phase::printing);
+    story.rs(State::ready_to_print);
+    story.rs(State::ready_to_print);
+    for (int answers = 0; answers < 4; ++answers) {
+        story.sm(0, 102, 0, false);
+        story.wait(milliseconds{20}); // it gets time to finish
+    }
+    story.take();
+    story.sm(0, 104, 0);
+    story.expect("?CC");
+    story.cc(1004);
+    EXPECT_EQ(std::get<Settle>(story.actions[0]).confirmed_through, RecordNumber{100}) << "before this verdict";
+    story.expect("settle this run so far: printed 101-101 by mail status and total print counter");
+    story.clear_fifo(104, true, 1004);
+    story.expect(
+        "settle this run: printed none, in doubt 102-104, unused none by mail status and total print counter; " +
+        ended(OutcomeCode::stopped_at_printer));
+}
+
 TEST(FeederStopping, shouldReportAnOpenCover) {
     Story story = reach(Phase::printing);
     story.rs(State::ready_to_print, 0, true);
@@ -157,6 +177,8 @@ TEST(FeederStopping, shouldStopWhenThePrinterHasLostItsMemory) {
         Story story = reach(Phase::printing);
         story.sm(1, 102, 110);
         story.take();
+        story.sm(0, back_to, 110);
+        story.expect(""); // a damaged answer?
         story.sm(0, back_to, 110);
         story.expect("!ST; ?RS");
         story.judge(0, back_to, true, 1003);
@@ -174,6 +196,8 @@ TEST(FeederStopping, shouldStopWhenThePrinterReportsWhatWasNeverSent) {
     for (const std::uint32_t number : {105U, 99U, 4294967295U}) {
         Story story = reach(Phase::printing);
         story.sm(1, number, 110);
+        story.expect(""); // a damaged answer?
+        story.sm(1, number, 110);
         story.expect("!ST; ?RS");
         story.judge(0, number, true, 1004);
         EXPECT_NE(story.take().find("in doubt 101-104"), std::string::npos);
@@ -182,6 +206,7 @@ TEST(FeederStopping, shouldStopWhenThePrinterReportsWhatWasNeverSent) {
 
 TEST(FeederStopping, shouldSayThatAnotherProgramFeedsThePrinter) {
     Story story = reach(Phase::printing);
+    story.sm(1, 5000, 110);
     story.sm(1, 5000, 110);
     story.judge(0, 5000, true, 1004);
     EXPECT_NE(story.take().find("end: impossible_report"), std::string::npos);
@@ -276,8 +301,8 @@ TEST(FeederStopping, shouldTakeTheLedgersWordOnlyWhereItIsAwaited) {
 
 TEST(FeederStopping, shouldFinishWhenAStopComesTooLate) {
     Story story = reach(Phase::printing);
-    story.sm(1, 104, 110);
-    story.sm(1, 108, 110);
+    story.sm(0, 104, 110);
+    story.sm(0, 108, 110);
     story.stop();
     story.judge(0, 110, true, 1010, end_message);
     story.expect("settle this run: printed 109-110, in doubt none, unused none by end message 1223; !EQ; ?RS");
@@ -287,8 +312,8 @@ TEST(FeederStopping, shouldFinishWhenAStopComesTooLate) {
 
 TEST(FeederStopping, shouldNotBelieveAnEndMessageThatTheNumberContradicts) {
     Story story = reach(Phase::printing);
-    story.sm(1, 104, 110);
-    story.sm(1, 107, 110);
+    story.sm(0, 104, 110);
+    story.sm(0, 107, 110);
     // Another client has set the stop point to 108.
     story.rs(State::ready_to_print, end_message);
     story.judge(0, 108, true, 1008, end_message);
@@ -298,8 +323,8 @@ TEST(FeederStopping, shouldNotBelieveAnEndMessageThatTheNumberContradicts) {
     EXPECT_NE(told.find("end: printer_error"), std::string::npos) << told;
 
     story = reach(Phase::printing); // a firmware that forgets its number with the stop
-    story.sm(1, 104, 110);
-    story.sm(1, 108, 110);
+    story.sm(0, 104, 110);
+    story.sm(0, 108, 110);
     story.rs(State::ready_to_print, end_message);
     story.judge(0, 0, true, 1010, end_message);
     EXPECT_NE(story.take().find("printed 109-110, in doubt none, unused none by end message 1223"), std::string::npos);
@@ -318,8 +343,8 @@ TEST(FeederStopping, shouldWaitUntilTheEndMessageIsGone) {
 TEST(FeederStopping, shouldKnowTheEndMessageWithBit24) {
     const std::int32_t odd = raw_error(1223U | 1U << 24U, 2);
     Story story = reach(Phase::printing);
-    story.sm(1, 104, 110);
-    story.sm(1, 108, 110);
+    story.sm(0, 104, 110);
+    story.sm(0, 108, 110);
     story.take();
     story.rs(State::ready_to_print, odd);
     story.judge(0, 110, true, 1010, odd);
@@ -328,8 +353,8 @@ TEST(FeederStopping, shouldKnowTheEndMessageWithBit24) {
 
 TEST(FeederStopping, shouldFinishOverAnUnderstoodErrorWhenAllIsPrinted) {
     Story story = reach(Phase::printing);
-    story.sm(1, 104, 110);
-    story.sm(1, 108, 110);
+    story.sm(0, 104, 110);
+    story.sm(0, 108, 110);
     story.rs(State::ready_to_print, raw_error(5043));
     story.judge(0, 110, true, 1010, raw_error(5043));
     EXPECT_NE(story.take().find("; !EQ; ?RS"), std::string::npos);
@@ -339,8 +364,8 @@ TEST(FeederStopping, shouldFinishOverAnUnderstoodErrorWhenAllIsPrinted) {
 
 TEST(FeederStopping, shouldNotBelieveTheEndMessageOfAPrinterThatWasStartedAgain) {
     Story story = reach(Phase::printing);
-    story.sm(1, 104, 110);
-    story.sm(1, 108, 110);
+    story.sm(0, 104, 110);
+    story.sm(0, 108, 110);
     story.stop();
     story.rs(State::ready_to_print);
     story.rs(State::printing); // somebody has started it: what it printed before and since is to be counted
@@ -351,8 +376,8 @@ TEST(FeederStopping, shouldNotBelieveTheEndMessageOfAPrinterThatWasStartedAgain)
 
 TEST(FeederStopping, shouldLeaveAnErrorAloneThatIsNotOfMailing) {
     Story story = reach(Phase::printing);
-    story.sm(1, 104, 110);
-    story.sm(1, 108, 110);
+    story.sm(0, 104, 110);
+    story.sm(0, 108, 110);
     story.rs(State::ready_to_print, raw_error(4711));
     story.judge(0, 110, true, 1010, raw_error(4711));
     const std::string told = story.take();

@@ -43,8 +43,19 @@ public:
         return run;
     }
 
-    /// Begins a run over the first stretch that may be printed; false if there is none.
-    [[nodiscard]] bool grant(const BeginRun& begin) {
+    /// The first record that may be printed; absent = there is none.
+    [[nodiscard]] std::optional<std::uint32_t> next_printable() const {
+        for (std::uint32_t number = 1; number < fates_.size(); ++number) {
+            if (fates_[number] == Fate::fresh || fates_[number] == Fate::unused) {
+                return number;
+            }
+        }
+        return std::nullopt;
+    }
+
+    /// Begins a run over the first stretch that may be printed; false if there is none. Only `imported` records are
+    /// there so far.
+    [[nodiscard]] bool grant(const BeginRun& begin, std::uint32_t imported) {
         const auto printable = [](Fate fate) { return fate == Fate::fresh || fate == Fate::unused; };
         const auto first = std::find_if(fates_.begin() + 1, fates_.end(), printable);
         const auto behind = std::find_if_not(first, fates_.end(), printable);
@@ -55,7 +66,7 @@ public:
         started_ = {granted_.first(), {}, {}, "S1", begin.printer.total_prints, begin.last_printed_before,
                     granted_.last()};
         issued_ = granted_.first().previous();
-        issue(std::min(granted_.last().value(), granted_.first().value() + 11));
+        issue(std::min({granted_.last().value(), granted_.first().value() + 11, imported}));
         return true;
     }
 

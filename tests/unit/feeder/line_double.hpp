@@ -21,6 +21,7 @@ struct Faults {
     bool restarts = false;       ///< stopped and at once started again at the panel, in the middle of a run
     bool requests = false;       ///< linefeed is asked to stop
     bool broken_counter = false; ///< `?CC` is not answered
+    bool slow_source = false;    ///< the records are read while they are printed, and nobody knows how many come
 };
 
 class Line {
@@ -30,6 +31,8 @@ public:
         , faults_(faults)
         , printer_(habit)
         , ledger_(records)
+        , imported_(faults.slow_source ? 0 : records)
+        , end_known_(!faults.slow_source)
         , take_over_(seed % 2 == 0) {}
 
     void run() {
@@ -61,6 +64,7 @@ public:
 
 private:
     static constexpr std::uint32_t records = 60;
+    static constexpr std::uint32_t most_records = 1000; ///< as far as anybody knows before the end is read
 
     template <typename... Parts>
     void note(const Parts&... parts) {
@@ -77,8 +81,12 @@ private:
         FeederSettings settings;
         settings.stop_timeout = std::chrono::milliseconds{200};
         settings.finish_timeout = std::chrono::milliseconds{100};
-        feeder_ = std::make_unique<Feeder>(
-            settings, FeederPlan{.open = ledger_.open_run(), .doubt_blocks = true, .take_over = take_over_});
+        FeederPlan plan{.open = ledger_.open_run(), .doubt_blocks = true, .take_over = take_over_};
+        if (plan.open && plan.open->last == RecordNumber{records}) {
+            plan.open->last = last_known();
+        }
+        feeder_ = std::make_unique<Feeder>(settings, plan);
+        running_ = false;
         ended_ = false;
         to_printer_.clear();
         to_host_.clear();
@@ -100,6 +108,9 @@ private:
         now_ += std::chrono::microseconds{draw(1500)};
         if (const auto wake = feeder_->next_wake(); wake && *wake <= now_) {
             act([this](Actions& out) { feeder_->on_time(now_, out); });
+        }
+        if (faults_.slow_source && chance(4)) {
+            source_goes_on();
         }
         switch (draw(8)) {
         case 0:
@@ -329,6 +340,10 @@ private:
             return;
         }
         const Action action = to_ledger_.front();
+        const bool waits = std::holds_alternative<BeginRun>(action) && ledger_.next_printable().value_or(0) > imported_;
+        if (waits) {
+            imported_ = ended_ ? imported_ : ledger_.next_printable().value_or(0); // no run begins without records
+        }
         note("ledger takes ", action);
         to_ledger_.pop_front();
         if (const auto* begin = std::get_if<BeginRun>(&action)) {
@@ -337,12 +352,14 @@ private:
             ledger_.confirm(adopted->printed_through.value());
             begin_printing(); // the earlier run goes on
         } else if (const auto* intent = std::get_if<AskIntent>(&action)) {
-            ledger_.issue(intent->through.value());
+            intent_wanted_ = intent->through.value();
+            ledger_.issue(std::min(intent_wanted_, imported_));
             tell([this](Actions& out) { feeder_->on_durable(ledger_.issued(), now_, out); });
         } else if (const auto* printed = std::get_if<ConfirmPrinted>(&action)) {
             ledger_.confirm(printed->through.value());
         } else if (const auto* settle = std::get_if<Settle>(&action)) {
             ledger_.settle(*settle);
+            intent_wanted_ = settle->earlier_run ? intent_wanted_ : 0;
             tell([this](Actions& out) { feeder_->on_settled(now_, out); });
         }
     }
@@ -355,7 +372,7 @@ private:
     }
 
     void grant(const BeginRun& begin) {
-        if (ledger_.grant(begin)) {
+        if (ledger_.grant(begin, imported_)) {
             begin_printing();
         } else { // the truth about the earlier run left nothing to print
             tell([this](Actions& out) { feeder_->on_refused(OutcomeCode::nothing_to_print, out); });
@@ -363,8 +380,42 @@ private:
     }
 
     void begin_printing() {
-        tell([this](Actions& out) { feeder_->on_granted(ledger_.granted(), ledger_.issued(), now_, out); });
-        tell([this](Actions& out) { feeder_->on_supplied(ledger_.granted().last(), now_, out); });
+        running_ = true;
+        intent_wanted_ = 0;
+        const RecordRange range = ledger_.granted();
+        const RecordNumber last = range.last() == RecordNumber{records} ? last_known() : range.last();
+        tell([&](Actions& out) {
+            feeder_->on_granted(RecordRange::closed(range.first(), last), ledger_.issued(), now_, out);
+        });
+        supply();
+    }
+
+    // The source.
+
+    RecordNumber last_known() const { return RecordNumber{end_known_ ? records : most_records}; }
+
+    void supply() {
+        tell([this](Actions& out) {
+            feeder_->on_supplied(std::min(RecordNumber{imported_}, ledger_.granted().last()), now_, out);
+        });
+    }
+
+    /// More records are durable, or there are no more.
+    void source_goes_on() {
+        if (imported_ < records) {
+            imported_ = std::min(records, imported_ + draw(6));
+            if (running_ && imported_ > 0) {
+                supply();
+                ledger_.issue(std::min({intent_wanted_, imported_, ledger_.granted().last().value()}));
+                tell([this](Actions& out) { feeder_->on_durable(ledger_.issued(), now_, out); });
+            }
+        } else if (!end_known_) {
+            note("the end is known");
+            end_known_ = true;
+            if (running_ && ledger_.granted().last() == RecordNumber{records}) {
+                tell([this](Actions& out) { feeder_->on_end_known(RecordNumber{records}, now_, out); });
+            }
+        }
     }
 
     std::mt19937 random_;
@@ -376,6 +427,10 @@ private:
     std::deque<Action> to_printer_;
     std::deque<std::function<void(Actions&)>> to_host_;
     std::deque<Action> to_ledger_;
+    std::uint32_t imported_;          ///< records that are durable
+    bool end_known_;                  ///< and told
+    bool running_ = false;            ///< granted
+    std::uint32_t intent_wanted_ = 0; ///< asked for, perhaps before the records were there
     bool take_over_ = false;
     bool ended_ = false;
     bool faults_end_ = false;

@@ -153,7 +153,7 @@ public:
     void print_all() {
         print();
         for (std::uint32_t number = first; number < last; ++number) {
-            sm(1, number, last);
+            sm(std::min(2U, last - 1 - number), number, last);
         }
         sm(0, last, 0);
         actions.clear();

@@ -35,6 +35,23 @@ TEST_F(LedgerHistoryTest, shouldPlaceAPrintBetweenTwoReports) {
                   {range(21, 40), RecordState::open, RunId{1}, 20, 25, "intent@25"}}));
 }
 
+/// Nobody learns from the operator's word when it was: not before the last report, and not after the doubt.
+TEST_F(LedgerHistoryTest, shouldPlaceAPrintThatWasInDoubtBeforeTheDoubt) {
+    add(LedgerKind::run_started, range(1, 100), 10);
+    add(LedgerKind::intent, range(1, 20), 11);
+    add(LedgerKind::printed, range(1, 5), 20);
+    add(LedgerKind::in_doubt, range(6, 8), 40);
+    add(LedgerKind::run_ended, {}, 41);
+    add(LedgerKind::printed, range(6, 7), 90);
+    add(LedgerKind::unused, range(8, 9), 91);
+    EXPECT_EQ(history.stretches(),
+              (std::vector<HistoryStretch>{{range(1, 5), RecordState::printed, RunId{1}, 10, 20, "printed@20"},
+                                           {range(6, 7), RecordState::printed, RunId{1}, 20, 40, "printed@90"},
+                                           {range(8, 8), RecordState::unused, RunId{1}, 20, 40, "unused@91"},
+                                           {range(9, 9), RecordState::unused, RunId{1}, 90, 91, "unused@91"},
+                                           {range(10, 20), RecordState::open, RunId{1}, 10, 11, "intent@11"}}));
+}
+
 TEST_F(LedgerHistoryTest, shouldGiveEveryKindItsState) {
     add(LedgerKind::intent, range(1, 9), 1);
     add(LedgerKind::printed, range(1, 1), 2);

@@ -62,6 +62,7 @@ TEST_F(SpoolFaultsTest, shouldTakeNoMoreWritesAfterAFailedAppendUntilItIsReopene
     EXPECT_THAT(again.error().message, HasSubstr("takes no more writes until linefeed is started again, because: "));
     EXPECT_THAT(again.error().message, HasSubstr("the disk is full"));
     EXPECT_FALSE(spool->append(job.id, {}));
+    EXPECT_FALSE(spool->append_together({}));
     EXPECT_FALSE(spool->begin_run(job.id, job.records, "{}"));
     EXPECT_FALSE(spool->begin_import(spec()));
     EXPECT_FALSE(spool->update_source(job.id, spec().source));

@@ -131,6 +131,21 @@ TEST_F(SpoolLedgerTest, shouldAppendToSeveralJobsAtOnce) {
     EXPECT_EQ(spool->verify_ledger().value(), 4);
 }
 
+/// More than are kept in memory.
+TEST_F(SpoolLedgerTest, shouldAppendToVeryManyJobsAtOnce) {
+    std::vector<JobRows> rows;
+    for (int jobs = 0; jobs < 100; ++jobs) {
+        const Job one = make_job(*spool, 10);
+        rows.push_back(
+            {one.id, {{LedgerKind::intent, spool->begin_run(one.id, one.records, "").value(), range(1, 4), ""}}});
+    }
+    ASSERT_TRUE(spool->append_together(rows));
+    for (const JobRows& each : rows) {
+        EXPECT_EQ(spool->ledger_state(each.job).value().ranges(RecordState::open), std::vector{range(1, 4)});
+    }
+    EXPECT_EQ(spool->verify_ledger().value(), 200);
+}
+
 TEST_F(SpoolLedgerTest, shouldWriteNothingForAnyJobIfARowOfOneContradicts) {
     const Job other = make_job(*spool, 50);
     const RunId run = begin_run();
