@@ -82,12 +82,12 @@ TEST(FeederSupply, shouldMoveTheStopPointWhenAllThatWasSentHasArrived) {
     Story story = printing_open_ended(110);
     end_known(story);
     EXPECT_EQ(story.take().find("=CM"), std::string::npos);
-    story.sm(3, 101, bound); // full, behind the refill
-    EXPECT_EQ(story.take().find("=CM"), std::string::npos) << "what is under way may be lost";
+    story.sm(2, 101, bound);             // well filled
+    story.expect("printed through 101"); // what is under way may be lost
     std::string told;
     int answers = 0;
     while (told.find("=CM 110") == std::string::npos && answers < 12) {
-        story.sm(3, 101, bound);
+        story.sm(2, 101, bound);
         told += story.take();
         ++answers;
     }
@@ -96,7 +96,7 @@ TEST(FeederSupply, shouldMoveTheStopPointWhenAllThatWasSentHasArrived) {
     // Read back: it goes on as always.
     told.clear();
     for (answers = 0; answers < 12 && told.find("=MR") == std::string::npos; ++answers) {
-        story.sm(1, 103, 110);
+        story.sm(1, 102, 110);
         told += story.take();
     }
     EXPECT_NE(told.find("=MR"), std::string::npos);
@@ -132,7 +132,7 @@ TEST(FeederSupply, shouldTakeAPrinterThatDoesNotMoveItsStopPointForOneThatIgnore
     end_known(story);
     std::string told;
     for (int answers = 0; answers < 60 && told.find("notice") == std::string::npos; ++answers) {
-        story.sm(3, 101, bound); // the old one, again and again
+        story.sm(2, 101, bound); // the old one, again and again
         told += story.take() + "; ";
     }
     EXPECT_NE(told.find("notice: the printer does not keep the stop point"), std::string::npos) << told;
@@ -148,7 +148,7 @@ TEST(FeederSupply, shouldStopWhenTheFifoIsFoundLostBehindTheMove) {
     end_known(story);
     std::string told;
     for (int answers = 0; answers < 12 && told.find("=CM 110") == std::string::npos; ++answers) {
-        story.sm(3, 101, bound);
+        story.sm(2, 101, bound);
         told += story.take();
     }
     for (int answers = 0; answers < 12 && story.phase() == Phase::printing; ++answers) {
@@ -158,25 +158,33 @@ TEST(FeederSupply, shouldStopWhenTheFifoIsFoundLostBehindTheMove) {
     EXPECT_NE(story.take().find("!ST"), std::string::npos);
 }
 
+/// The printer has the stop point that it was told, and prints on when that has been read back.
 TEST(FeederSupply, shouldFinishBehindTheLastRecordOnceItIsKnown) {
     Story story = printing_open_ended(110);
     end_known(story);
     std::string told;
-    std::uint32_t printed = 101;
+    std::uint32_t printed = 102;
+    std::uint32_t sent = 104;
     std::uint32_t stop_at = bound;
-    for (int answers = 0; answers < 100 && printed <= 110; ++answers) {
-        const std::uint32_t held = std::min(3U, 110 - printed);
-        story.sm(held == 0 ? 0 : held - 1, printed, stop_at);
+    int answers_moved = 0;
+    for (int answers = 0; answers < 40 && printed < 110; ++answers) {
+        story.sm(sent - printed - 1, printed, stop_at);
         const std::string actions = story.take();
         stop_at = actions.find("=CM 110") != std::string::npos ? 110 : stop_at;
-        told += actions + "; ";
-        printed += stop_at == 110 && answers % 3 == 0 && printed < 110 ? 1 : 0;
-        if (printed == 110 && told.find("?RS") != std::string::npos) {
-            break;
+        if (const std::size_t refill = actions.find("=MR "); refill != std::string::npos) {
+            sent = static_cast<std::uint32_t>(std::stoul(actions.substr(refill + 8)));
         }
+        answers_moved += stop_at == 110 ? 1 : 0;
+        printed += answers_moved > 4 && sent > printed ? 1 : 0;
+        told += actions + "; ";
     }
     EXPECT_EQ(stop_at, 110U) << told;
-    EXPECT_NE(told.find("-110"), std::string::npos) << "the last record was sent: " << told;
+    EXPECT_EQ(sent, 110U) << told;
+    story.sm(0, 110, 110);
+    story.expect("printed through 110; ?RS");
+    story.rs(State::ready_to_print, end_message);
+    story.judge(0, 110, true, 1010, end_message);
+    EXPECT_NE(story.take().find("end: finished"), std::string::npos);
 }
 
 } // namespace
