@@ -184,6 +184,8 @@ TEST(FeederSupply, shouldFinishBehindTheLastRecordOnceItIsKnown) {
     story.expect("printed through 110; ?RS");
     story.rs(State::ready_to_print, end_message);
     story.judge(0, 110, true, 1010, end_message);
+    story.expect("settle this run: printed none, in doubt none, unused none by nothing was issued; !EQ; ?RS");
+    story.rs(State::ready_to_print);
     EXPECT_NE(story.take().find("end: finished"), std::string::npos);
 }
 
