@@ -145,6 +145,20 @@ TEST(FeederSupply, shouldWarnAgainWhenTheSupplyHadCaughtUp) {
     EXPECT_NE(story.take().find("notice"), std::string::npos) << "it had been filled in between";
 }
 
+TEST(FeederSupply, shouldNotWarnOnceMoreWhileTheStopPointMoves) {
+    Story story = printing_open_ended();
+    end_known(story);
+    story.sm(2, 101, bound); // well filled: nothing is sent now
+    story.sm(0, 104, bound);
+    EXPECT_NE(story.take().find("notice"), std::string::npos);
+    story.supplied(110);
+    story.durable(110);
+    story.sm(0, 104, bound);
+    const std::string told = story.take();
+    EXPECT_EQ(told.find("notice"), std::string::npos) << told;
+    EXPECT_EQ(told.find("=MR"), std::string::npos) << told;
+}
+
 TEST(FeederSupply, shouldNotCareAboutTheEndOutsideOfARun) {
     Story story;
     story.identify();
