@@ -208,6 +208,8 @@ TEST(FeederFilling, shouldGetUsedToAPrinterThatCountsTheLoadedRecordToo) {
     story.sm(3, 101, 110);
     story.sm(3, 101, 110);
     EXPECT_NE(story.take().find("=MR 105-105"), std::string::npos);
+    story.sm(0, 106, 110); // it was not sent
+    story.expect("!ST; ?RS");
 }
 
 TEST(FeederFilling, shouldStopWhenThePrinterTakesNoRecords) {

@@ -164,6 +164,9 @@ TEST(Reconcile, shouldDoubtEverythingWhenSomethingElseWasPrintedMeanwhile) {
     Evidence fed = uninterrupted(says(115, 1015));
     fed.fed_by_another = true;
     EXPECT_EQ(verdict(run_with(110), fed), doubt_from_111);
+    Evidence nothing_printed = uninterrupted(says(77, 1000));
+    nothing_printed.fed_by_another = true;
+    EXPECT_EQ(verdict(run_with(100), nothing_printed), nothing_printed_by + "mail status");
 }
 
 TEST(Reconcile, shouldTakeAPrintedEndMarkerForTheProofOfTheLastRecord) {
