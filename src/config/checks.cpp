@@ -50,13 +50,17 @@ void check_layout(const LayoutSettings& layout, Context& context) {
     if (layout.table && layout.query) {
         context.refuse(key + ".query", "table and query exclude each other");
     }
-    for (const std::string_view sqlite : {"table", "query"}) {
-        for (const std::string_view csv : {"delimiter", "header"}) {
-            const std::string csv_key = join(key, csv);
-            if (context.was_read(join(key, sqlite)) && context.was_read(csv_key)) {
-                context.refuse(csv_key, std::string{csv} + " is for CSV files, " + std::string{sqlite} +
-                                            " for SQLite databases: they exclude each other");
-            }
+    if (layout.table || layout.query) {
+        const std::string sqlite = layout.table ? "table" : "query";
+        const auto refuse = [&](const std::string& csv) {
+            context.refuse(join(key, csv),
+                           "is for CSV files, " + sqlite + " for SQLite databases: they exclude each other");
+        };
+        if (layout.delimiter) {
+            refuse("delimiter");
+        }
+        if (!layout.header) {
+            refuse("header");
         }
     }
     if (layout.columns.empty()) {
@@ -94,9 +98,9 @@ void check_folder_paths(const Settings& settings, Context& context) {
         for (auto other = settings.folders.begin(); other != folder; ++other) {
             if (context.was_read("folders." + other->name + ".path") &&
                 (lies_in(folder->path, other->path) || lies_in(other->path, folder->path))) {
-                context.refuse(key, folder->path == other->path
-                                        ? "is the path of folder " + other->name + " already"
-                                        : "lies in the other, folder " + other->name + ": keep them apart");
+                context.refuse(key, folder->path == other->path ? "is the path of folder " + other->name + " already"
+                                                                : "it and that of folder " + other->name +
+                                                                      " lie in each other: keep them apart");
                 break;
             }
         }

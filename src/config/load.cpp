@@ -18,7 +18,7 @@ std::optional<std::string> read_file(const std::filesystem::path& file, const st
         if (key.empty()) {
             context.refuse(Place{}, key, why);
         } else {
-            context.refuse(key, in_quotes(file.string()) + ": " + why);
+            context.refuse(key, "cannot read " + in_quotes(file.string()) + ": " + why);
         }
         return std::nullopt;
     };
@@ -47,13 +47,19 @@ Context context_for(const std::filesystem::path& file) {
     return {file.string(), std::filesystem::absolute(file).parent_path().lexically_normal()};
 }
 
-Settings read_settings(std::string_view text, const Environment& environment, Context& context) {
-    Settings settings;
+/// An empty file is refused and unusable.
+Node read_root(std::string_view text, Context& context) {
     Node root = read_yaml(text, context.file, context.problems);
     if (root.kind == Node::Kind::nothing) {
         context.refuse(Place{}, {}, "the file is empty");
         root.kind = Node::Kind::unusable;
     }
+    return root;
+}
+
+Settings read_settings(std::string_view text, const Environment& environment, Context& context) {
+    Settings settings;
+    Node root = read_root(text, context);
     apply_environment(environment, root, context);
     read_section(settings, root, {}, context);
     if (root.kind != Node::Kind::unusable) {
@@ -64,7 +70,7 @@ Settings read_settings(std::string_view text, const Environment& environment, Co
 
 ErrorTable read_error_table(std::string_view text, Context& context) {
     ErrorTable table;
-    const Node root = read_yaml(text, context.file, context.problems);
+    const Node root = read_root(text, context);
     read_section(table, root, {}, context);
     return table;
 }

@@ -18,7 +18,8 @@ namespace {
 /// Lines of the text, to turn the byte offsets of yaml-cpp into columns as an editor shows them.
 class Lines {
 public:
-    explicit Lines(std::string_view text) {
+    explicit Lines(std::string_view text)
+        : text_(text) {
         while (true) {
             const std::size_t end = text.find('\n');
             lines_.push_back(text.substr(0, end));
@@ -42,9 +43,36 @@ public:
         return {static_cast<std::uint32_t>(mark.line) + 1, static_cast<std::uint32_t>(characters) + 1, {}};
     }
 
+    /// The text from the mark on.
+    [[nodiscard]] std::string_view from(const YAML::Mark& mark) const {
+        if (mark.is_null() || static_cast<std::size_t>(mark.line) >= lines_.size()) {
+            return {};
+        }
+        const auto line = lines_[static_cast<std::size_t>(mark.line)].data() - text_.data();
+        return text_.substr(std::min(static_cast<std::size_t>(line + mark.column), text_.size()));
+    }
+
 private:
+    std::string_view text_;
     std::vector<std::string_view> lines_;
 };
+
+/// Whether a text that begins with a quote has the quote that ends it. yaml-cpp takes the end of the file for one, and
+/// everything up to there for the value.
+bool quote_is_closed(std::string_view text) {
+    const char quote = text.front();
+    for (std::size_t i = 1; i < text.size(); ++i) {
+        if (quote == '"' && text[i] == '\\') {
+            ++i;
+        } else if (text[i] == quote) {
+            if (quote == '"' || i + 1 == text.size() || text[i + 1] != quote) {
+                return true;
+            }
+            ++i; // two single quotes stand for one
+        }
+    }
+    return false;
+}
 
 /// Ends the parse: the tree would be too deep.
 struct TooDeep {};
@@ -73,6 +101,10 @@ public:
         Node node = begin(mark, tag, anchor, Node::Kind::scalar);
         node.text = value;
         node.plain = tag == "?";
+        const std::string_view written = lines_.from(mark);
+        if ((written.starts_with('"') || written.starts_with('\'')) && !quote_is_closed(written)) {
+            node = refused(node.place, "not valid YAML: the quote is not closed");
+        }
         complete(std::move(node));
     }
     void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
@@ -167,6 +199,9 @@ private:
             return;
         }
         if (parent.key->kind == Node::Kind::scalar) {
+            if (node.kind == Node::Kind::nothing) {
+                node.place = parent.key->place; // yaml-cpp's is that of the next thing in the file
+            }
             parent.node.entries.push_back({parent.key->text, parent.key->place, std::move(node)});
         }
         parent.key.reset();
