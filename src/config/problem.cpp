@@ -64,7 +64,9 @@ std::string to_string(const Problem& problem) {
         out += ": ";
         append_escaped(out, problem.key, no_limit);
     }
-    return out + ": " + problem.message;
+    out += ": ";
+    append_escaped(out, problem.message, no_limit); // a message of yaml-cpp may quote the file
+    return out;
 }
 
 void Problems::add(Problem problem) {
