@@ -196,8 +196,8 @@ CLI::App& add_ledger(CLI::App& app, LedgerOptions& options, RawLedgerOptions& ra
 }
 
 CLI::App& add_check_config(CLI::App& app, CheckConfigOptions& options, std::string& output) {
-    CLI::App& check = *app.add_subcommand(
-        "check-config", "Check the configuration of the service and show the settings that it gives");
+    CLI::App& check = *app.add_subcommand("check-config",
+                                          "Check the configuration of the service and show the settings that it gives");
     check.footer("Variables of the environment go before the file: LINEFEED_HTTP_PORT is http.port.\n"
                  "Exit codes: 0 good, 2 refused: each problem with file, line and column on stderr.");
     check.add_option("FILE", options.file, "The configuration, YAML; see config/linefeed.yaml")->required();

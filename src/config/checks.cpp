@@ -19,6 +19,7 @@ struct CapacityOf<BoundedList<T, Capacity>> {
 template <typename T>
 std::vector<std::string> names(const std::vector<T>& elements) {
     std::vector<std::string> names;
+    names.reserve(elements.size());
     for (const T& element : elements) {
         names.push_back(element.name);
     }

@@ -96,6 +96,7 @@ bool looks_like_setting(std::string_view name) {
 
 void refuse_unknown(const std::string& name, const std::map<std::string, Path>& known, Context& context) {
     std::vector<std::string> names;
+    names.reserve(known.size());
     for (const auto& entry : known) {
         names.push_back(entry.first);
     }

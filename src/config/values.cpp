@@ -316,6 +316,7 @@ std::optional<std::size_t> read_word(const Node& node, const std::string& key, C
 
 std::vector<std::string> ProfileValue::names() {
     std::vector<std::string> names;
+    names.reserve(protocol::profiles.size());
     for (const protocol::Profile& profile : protocol::profiles) {
         names.emplace_back(profile.name);
     }

@@ -9,6 +9,7 @@
 #include <unordered_map>
 #include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/exceptions.h>
+#include <yaml-cpp/node/node.h> // parser.h only declares it
 #include <yaml-cpp/parser.h>
 
 namespace linefeed::config {

@@ -21,11 +21,11 @@ struct Node {
         unusable, ///< a problem was reported for it already: to be passed over in silence
     };
     Kind kind = Kind::nothing;
-    std::string text{};           ///< of a scalar, quotes undone
-    bool plain = true;            ///< a scalar without quotes
-    Place place{};                ///< of the first character
-    std::vector<Node> items{};    ///< of a sequence
-    std::vector<Entry> entries{}; ///< of a mapping, in order; may hold a key twice
+    std::string text{};         ///< of a scalar, quotes undone
+    bool plain = true;          ///< a scalar without quotes
+    Place place{};              ///< of the first character
+    std::vector<Node> items{};  ///< of a sequence
+    std::vector<Entry> entries; ///< of a mapping, in order; may hold a key twice
 
     /// The value of the first entry with that key; nullptr = none.
     [[nodiscard]] const Node* find(std::string_view key) const;

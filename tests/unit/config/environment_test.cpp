@@ -1,6 +1,7 @@
 // Variables of the environment go before the file; those that only look like settings are refused.
-#include "config/effective.hpp"
 #include "config/environment.hpp"
+#include "config/keys.hpp"
+#include "config/names.hpp"
 #include "texts.hpp"
 
 #include <gmock/gmock.h>
@@ -80,6 +81,20 @@ TEST(Environment, shouldNotHideWhatIsWrongWithTheFile) {
                 ElementsAre("f.yaml:1:7: http: expected a mapping, found \"5\""));
     EXPECT_THAT(refusals_of("a: [\n", {{"LINEFEED_HTTP_PORT", "80"}}),
                 ElementsAre(testing::HasSubstr("not valid YAML")));
+}
+
+TEST(Environment, shouldNameOneSettingOnlyWhateverTheNamesOfElements) {
+    for (const KeyInfo& one : known_keys()) {
+        for (const KeyInfo& other : known_keys()) {
+            const std::size_t star = one.path.find(".*.");
+            const bool together =
+                star != std::string::npos && one.path.compare(0, star + 3, other.path, 0, star + 3) == 0;
+            EXPECT_FALSE(together &&
+                         variable_word(one.path).ends_with('_' + variable_word(other.path.substr(star + 3))) &&
+                         one.path != other.path)
+                << one.path << " of one name could be " << other.path << " of another";
+        }
+    }
 }
 
 TEST(Environment, shouldBeReadFromTheProcess) {
