@@ -8,12 +8,15 @@ import json
 import os
 import pathlib
 import re
+import select
 import shlex
 import shutil
 import signal
+import socket
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
@@ -105,6 +108,53 @@ class Printer:
         if self.process.poll() is None:
             self.process.kill()
         self.process.communicate()
+
+
+class Tap:
+    """Stands between linefeed and the printer, passes on what it gets, and remembers when the first record came by."""
+
+    def __init__(self, printer_port):
+        self.first_record_ns = None
+        self.printer_port = printer_port
+        self.listener = socket.create_server(("127.0.0.1", 0))
+        self.port = self.listener.getsockname()[1]
+        self.thread = threading.Thread(target=self.serve, daemon=True)
+
+    def __enter__(self):
+        self.thread.start()
+        return self
+
+    def __exit__(self, *_):
+        with contextlib.suppress(OSError):
+            self.listener.shutdown(socket.SHUT_RDWR)
+        self.listener.close()
+        self.thread.join()
+
+    def serve(self):
+        while True:
+            try:
+                host, _ = self.listener.accept()
+            except OSError:
+                return
+            with host, socket.create_connection(("127.0.0.1", self.printer_port)) as printer:
+                for end in (host, printer):
+                    end.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+                with contextlib.suppress(ConnectionError):
+                    self.pass_on(host, printer)
+
+    def pass_on(self, host, printer):
+        """Until one of them has closed."""
+        seen = b""
+        while True:
+            for end in select.select([host, printer], [], [])[0]:
+                data = end.recv(65536)
+                if not data:
+                    return
+                if end is host and self.first_record_ns is None:
+                    seen = seen[-4:] + data
+                    if b"=MR" in seen:
+                        self.first_record_ns = time.monotonic_ns()
+                (printer if end is host else host).sendall(data)
 
 
 class Hiccups:

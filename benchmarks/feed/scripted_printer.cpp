@@ -121,8 +121,10 @@ void ScriptedPrinter::answer(Parameter inquiry) {
 }
 
 void ScriptedPrinter::append_mail_status() {
-    protocol::append_message(
-        answers_, protocol::MailStatus{depth_, received_ - printed_, RecordNumber{printed_}, RecordNumber{stop_at_}});
+    const std::uint32_t level = received_ - printed_;
+    const std::uint32_t entries = std::max(level, 1U) - 1; // without the one in the print buffer
+    protocol::append_message(answers_,
+                             protocol::MailStatus{depth_, entries, RecordNumber{printed_}, RecordNumber{stop_at_}});
 }
 
 bool ScriptedPrinter::ready() const {

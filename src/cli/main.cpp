@@ -84,7 +84,8 @@ void add_print(CLI::App& app, PrintOptions& options, RawPrintOptions& raw) {
     print.add_flag("--new-job", options.new_job, "Print the file as a new job, even if it was printed before");
     print.add_flag("--while-importing", options.while_importing,
                    "Begin to print before the file is read to its end. At a row that cannot be printed the line stops "
-                   "behind the record before it (exit code 5), and the mended file continues there");
+                   "behind the record before it (exit code 5), and the mended file continues there; where the file is "
+                   "read more slowly than the line prints, the line stops too (exit code 4)");
     print.add_flag("--open-nozzle", options.open_nozzle, "Open the nozzle if it is closed (takes 30 to 60 s)");
     print
         .add_option("--acknowledge", options.acknowledge,

@@ -1,5 +1,6 @@
 #include "daemon/job_run.hpp"
 
+#include <boost/asio/bind_allocator.hpp>
 #include <boost/asio/post.hpp>
 
 #include <unistd.h>
@@ -158,16 +159,17 @@ std::vector<feeder::Notice> JobRun::take_notices() {
 }
 
 void JobRun::wait_for_replies() {
+    auto handler = [this](const boost::system::error_code& error) {
+        if (error) {
+            return;
+        }
+        store_.replies_signal().clear();
+        take_stop_request();
+        take_replies();
+        wait_for_replies();
+    };
     edge_->replies.async_wait(asio::posix::stream_descriptor::wait_read,
-                              [this](const boost::system::error_code& error) {
-                                  if (error) {
-                                      return;
-                                  }
-                                  store_.replies_signal().clear();
-                                  take_stop_request();
-                                  take_replies();
-                                  wait_for_replies();
-                              });
+                              asio::bind_allocator(link::HandlerAllocator<>{edge_->memory}, handler));
 }
 
 void JobRun::take_stop_request() {

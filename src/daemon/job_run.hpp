@@ -5,6 +5,7 @@
 #include "daemon/feed_thread.hpp"
 #include "daemon/store_thread.hpp"
 #include "feeder/outcome.hpp"
+#include "link/handler_memory.hpp"
 #include "link/printer_address.hpp"
 #include "link/tcp_link.hpp"
 #include "session/session.hpp"
@@ -13,6 +14,7 @@
 #include <boost/asio/posix/stream_descriptor.hpp>
 
 #include <atomic>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -85,6 +87,7 @@ private:
     struct Edge {
         explicit Edge(JobRun& run);
         link::TcpLink link;
+        std::shared_ptr<link::HandlerMemory> memory = std::make_shared<link::HandlerMemory>();
         boost::asio::posix::stream_descriptor replies;
     };
 

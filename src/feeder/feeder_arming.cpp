@@ -205,6 +205,10 @@ void Feeder::verify(Instant now, Actions& out) {
         ask_later(Parameter::SM, now);
         return;
     }
+    if (mail_.entries + std::uint64_t{2} < sent) { // one less may be a way to count
+        begin_stop(OutcomeCode::stopped_at_printer, now, out);
+        return;
+    }
     const std::uint64_t excess = mail_.entries >= sent ? mail_.entries + std::uint64_t{1} - sent : 0;
     if (excess > 1) {
         begin_stop(OutcomeCode::impossible_report, now, out); // somebody else feeds the printer
@@ -246,8 +250,7 @@ void Feeder::start_answered(Instant now, Actions& out) {
         enter(Phase::printing, now, Duration::max());
         out.push_back(Notice{NoticeCode::printing_started, {}});
         if (stop_point_ == StopPoint::unset) {
-            out.push_back(SetStopAt{refill_.range().last()});
-            ++stop_point_tries_;
+            set_stop_point_again(out);
         }
         status_due_ = now + settings_.status_interval;
         if (mail_outstanding_ == 0) {

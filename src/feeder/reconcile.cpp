@@ -141,6 +141,10 @@ Verdict by_number(const OpenRun& run, const Evidence& evidence) {
     if (evidence.restarted && counter != CounterSays::agrees) {
         return all_in_doubt(run);
     }
+    const bool unanswered = run.total_before && !evidence.printer.total_prints;
+    if (unanswered && (!evidence.uninterrupted || evidence.restart_unseen)) {
+        return all_in_doubt(run); // it could tell whether records were skipped
+    }
     switch (counter) {
     case CounterSays::agrees:
         return printed_as_reported(run, evidence, Basis::mail_status_and_counter);

@@ -1,5 +1,7 @@
 #include "link/tcp_link.hpp"
 
+#include <boost/asio/bind_allocator.hpp>
+
 #include <algorithm>
 #include <span>
 #include <utility>
@@ -87,7 +89,7 @@ void TcpLink::connected() {
 }
 
 void TcpLink::read() {
-    socket_.async_read_some(asio::buffer(received_), [this](const error_code& error, std::size_t bytes) {
+    auto handler = [this](const error_code& error, std::size_t bytes) {
         if (!open_) {
             return;
         }
@@ -101,7 +103,8 @@ void TcpLink::read() {
         if (open_) {
             read();
         }
-    });
+    };
+    socket_.async_read_some(asio::buffer(received_), asio::bind_allocator(HandlerAllocator<>{memory_}, handler));
 }
 
 void TcpLink::carry_out(session::Effects& effects) {
@@ -163,7 +166,7 @@ bool TcpLink::continue_write() {
 }
 
 void TcpLink::wait_until_writable() {
-    socket_.async_wait(asio::ip::tcp::socket::wait_write, [this](const error_code& error) {
+    auto handler = [this](const error_code& error) {
         if (!open_ || error) {
             return;
         }
@@ -172,7 +175,8 @@ void TcpLink::wait_until_writable() {
                 session.on_written(at, effects);
             });
         }
-    });
+    };
+    socket_.async_wait(asio::ip::tcp::socket::wait_write, asio::bind_allocator(HandlerAllocator<>{memory_}, handler));
 }
 
 void TcpLink::broken() {
@@ -208,13 +212,14 @@ void TcpLink::arm_timer() {
     }
     armed_ = wake;
     timer_.expires_at(std::chrono::steady_clock::time_point{wake->time_since_epoch()});
-    timer_.async_wait([this](const error_code& error) {
+    auto handler = [this](const error_code& error) {
         if (error || !open_) {
             return;
         }
         armed_.reset();
         call([](session::Session& session, Instant at, session::Effects& effects) { session.on_time(at, effects); });
-    });
+    };
+    timer_.async_wait(asio::bind_allocator(HandlerAllocator<>{memory_}, handler));
 }
 
 } // namespace linefeed::link

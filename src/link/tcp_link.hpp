@@ -3,6 +3,7 @@
 #pragma once
 
 #include "base/time.hpp"
+#include "link/handler_memory.hpp"
 #include "session/session.hpp"
 
 #include <boost/asio/io_context.hpp>
@@ -10,6 +11,7 @@
 #include <boost/asio/steady_timer.hpp>
 
 #include <array>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -62,6 +64,7 @@ private:
     void close();
     void arm_timer();
 
+    std::shared_ptr<HandlerMemory> memory_ = std::make_shared<HandlerMemory>();
     boost::asio::ip::tcp::socket socket_;
     boost::asio::steady_timer timer_;
     session::Session& session_;

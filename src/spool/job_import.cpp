@@ -7,12 +7,18 @@
 
 #include <algorithm>
 #include <new>
+#include <utility>
 
 namespace linefeed::spool {
 
 namespace {
 
 constexpr std::size_t import_transaction_bytes = std::size_t{8} * 1024 * 1024;
+/// The WAL is copied into the database whenever so much has come in: that takes two syncs more, so not behind each
+/// transaction where those are small.
+constexpr std::size_t checkpoint_bytes = std::size_t{8} * 1024 * 1024;
+/// What a transaction adds to the WAL at most besides its records: whole pages of the database, however few records.
+constexpr std::size_t transaction_overhead_bytes = std::size_t{64} * 1024;
 
 /// The records of `page` from `first` on.
 RecordPage tail_of(const RecordPage& page, RecordNumber first) {
@@ -36,7 +42,8 @@ struct JobImport::State {
     std::optional<RecordPage> compared{}; ///< the page that was read back last
     std::vector<RecordPage> waiting{};    ///< pages for the next transaction
     std::size_t waiting_bytes = 0;
-    std::optional<Failure> failed{}; ///< why it cannot be completed
+    std::size_t behind_checkpoint_bytes = 0; ///< written since the last checkpoint
+    std::optional<Failure> failed{};         ///< why it cannot be completed
     bool committed = false;
 
     [[nodiscard]] Result<void> compare(const RecordPage& page);
@@ -131,11 +138,15 @@ Result<void> JobImport::State::write_waiting() {
     stored = records;
     new_source = false;
     waiting.clear();
-    waiting_bytes = 0;
+    behind_checkpoint_bytes += std::exchange(waiting_bytes, 0) + transaction_overhead_bytes;
     if (const auto ledger = spool->ledgers.find(static_cast<std::int64_t>(job.id)); ledger != spool->ledgers.end()) {
         ledger->second.records = job.records;
         ledger->second.complete = job.state == ImportState::ready;
     }
+    if (behind_checkpoint_bytes < checkpoint_bytes && job.state == ImportState::importing) {
+        return {};
+    }
+    behind_checkpoint_bytes = 0;
     if (auto copied = spool->database->checkpoint_passive(); !copied) {
         return copied.error();
     }

@@ -288,7 +288,7 @@ class StreamingChangedFiles(SlowSource):
     def test_changed_in_what_is_read(self):
         printer, printed = self.break_off()
         self.update("UPDATE names SET name = 'Somebody 000003' WHERE id = 3")
-        self.assert_refused(printer, printed, "the records 1 to", "are not those that were imported from it before")
+        self.assert_refused(printer, printed, "the records ", " are not those that were imported from it before")
 
     def test_read_in_another_way(self):
         printer, printed = self.break_off()
@@ -333,6 +333,52 @@ class StreamingChangedFiles(SlowSource):
         result = self.print(self.file, printer, *self.options(), "--new-job")
         self.assert_one_clear_line(2, result, "continue it without --new-job")
         self.assertEqual(printed, printer.prints())
+
+
+class StreamingFailures(SlowSource):
+    """The source or the spool gives up in the middle; the line stops cleanly, and the same command goes on when that is mended."""
+
+    def test_source_that_cannot_be_read_any_further(self):
+        content = self.file.read_bytes()
+        page_bytes = int.from_bytes(content[16:18], "big")
+        self.file.write_bytes(content[:-page_bytes] + b"\xff" * page_bytes)  # the last rows
+        printer = self.simulator("--rate", RATE)
+        result = self.print(self.file, printer, *self.options())
+        self.assert_one_clear_line(5, result, "the file is damaged")
+        printed = self.ours(printer)
+        self.assertGreater(len(printed), 100)
+        self.judge(self.records[:len(printed)], printed)
+        self.assert_ledger_honest(printer)
+        [(state, records)] = self.jobs_in_spool()
+        self.assertEqual("importing", state)
+        self.assertGreaterEqual(records, len(printed))
+        again = self.print(self.file, printer, *self.options())
+        self.assert_code(5, again)
+        self.judge(self.records[:len(self.ours(printer))], self.ours(printer))
+
+    def test_source_that_is_gone(self):
+        """What was opened is read to its end."""
+        printer = self.simulator("--rate", RATE)
+        job = self.start_printing(printer)
+        self.assert_importing()
+        self.file.unlink()
+        self.assert_done(job.wait())
+        self.assert_printed(self.records, printer)
+
+    def test_disk_that_takes_no_more(self):
+        """The import and the ledger cannot be written any further: nothing is printed that is not known to be."""
+        printer = self.simulator("--rate", RATE)
+        limited = ["sh", "-c", "trap '' XFSZ; ulimit -f 4000; exec \"$@\"", "sh"]
+        job = harness.Job([*limited, *self.command(self.file, printer, *self.options())])
+        self.addCleanup(job.kill)
+        result = job.wait()
+        self.assert_code(4, result)
+        self.assertIn("the line is stopped", result.err)
+        self.assertIn("the disk cannot be written", result.err)
+        self.assertGreater(len(printer.prints()), 0)
+        self.assertLess(len(printer.prints()), self.count)
+        self.assert_ledger_honest(printer)
+        self.finish_by_products(printer, options=self.options())
 
 
 class StreamingKill(SlowSource):

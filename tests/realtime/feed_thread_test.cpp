@@ -7,6 +7,7 @@
 #include "simulator/simulator.hpp"
 #include "watched_calls.hpp"
 
+#include <boost/asio/io_context.hpp>
 #include <gtest/gtest.h>
 
 #include <array>
@@ -14,11 +15,13 @@
 #include <csignal>
 #include <fcntl.h>
 #include <iostream>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <sys/socket.h>
 #include <thread>
 #include <unistd.h>
+#include <vector>
 
 namespace linefeed::realtime {
 namespace {
@@ -109,6 +112,70 @@ TEST_F(FeedThreadTest, shouldNeitherAllocateNorLockNorTouchAFileInTheSteadyState
     if (HasFailure()) {
         std::cout << first_stacks();
     }
+}
+
+/// What one printer's turn sets free, another's takes: nothing goes back to the heap in between.
+TEST(ManyPrintersFeedThreadTest, shouldNeitherAllocateNorLockNorTouchAFileInTheSteadyState) {
+    constexpr int printers = 16;
+    constexpr double rate = 300;
+    constexpr std::uint32_t many_records = 3000;
+    SpoolDirectory directory;
+    boost::asio::io_context io{1};
+    std::vector<std::unique_ptr<simulator::Simulator>> simulators;
+    std::vector<spool::Job> jobs;
+    std::vector<daemon::JobRunSettings> settings(printers);
+    for (auto& one : settings) {
+        simulator::SimulatorSettings line;
+        line.port = "0";
+        line.conveyor.rate = rate;
+        line.printer.print_duration = std::chrono::microseconds{500};
+        line.server.reply_delay = std::chrono::milliseconds{2};
+        simulators.push_back(std::make_unique<simulator::Simulator>(line, io));
+        one.printer = link::parse_printer_address("tcp://" + simulators.back()->open().value()).value();
+        one.endpoints = link::resolve(one.printer).value();
+        jobs.push_back(directory.import_job(many_records));
+    }
+    std::thread line{[&] {
+        exempt_this_thread();
+        for (const auto& simulator : simulators) {
+            simulator->start();
+        }
+        io.run();
+    }};
+    {
+        daemon::FeedThread feed{{}};
+        daemon::StoreThread store{directory.spool()};
+        static_cast<void>(feed.start());
+        std::vector<std::unique_ptr<daemon::JobRun>> runs;
+        for (int i = 0; i < printers; ++i) {
+            store.call([&](spool::Spool& spool) {
+                const spool::Job& job = jobs[static_cast<std::size_t>(i)];
+                runs.push_back(std::make_unique<daemon::JobRun>(daemon::RunThreads{feed, store}, spool, job,
+                                                                job.records, std::nullopt,
+                                                                settings[static_cast<std::size_t>(i)]));
+            });
+            runs.back()->start();
+        }
+        for (const auto& run : runs) {
+            wait_for(*run, many_records / 3);
+        }
+        watch(true);
+        wait_for(*runs.front(), many_records - 300);
+        watch(false);
+        for (const auto& run : runs) {
+            EXPECT_FALSE(run->finished());
+        }
+        const CallCounts seen = counts();
+        EXPECT_GE(seen.sends, 10000U);
+        for (std::size_t i = 0; i < call_kinds; ++i) {
+            EXPECT_EQ(seen.forbidden[i], 0U) << to_string(static_cast<Call>(i));
+        }
+        if (testing::Test::HasFailure()) {
+            std::cout << first_stacks();
+        }
+    }
+    ::kill(::getpid(), SIGTERM); // the simulators serve until then
+    line.join();
 }
 
 TEST_F(FeedThreadTest, shouldTakeAStopFromAnotherThread) {

@@ -93,6 +93,7 @@ void Host::start(const cli::OperatorWord& word) {
     LINEFEED_ASSERT(!running());
     ++context_.counts.starts;
     context_.trace.note(context_.now, "program starts", word.given() ? 1 : 0);
+    refusals_before_ = RamDisk::instance().refusals();
     word_ = word;
     word_counts_ = word.given();
     interrupted_ = false;

@@ -102,6 +102,7 @@ private:
     bool interrupted_ = false;
     bool records_open_ = false;
     Instant paused_until_{};
+    std::uint64_t refusals_before_ = 0; ///< of the disk, as the program was started
     std::uint64_t generation_ = 0;
     std::optional<std::uint64_t> steps_to_live_;
     std::int64_t wall_ns_ = 1'700'000'000'000'000'000;

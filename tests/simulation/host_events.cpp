@@ -176,11 +176,14 @@ void Host::run_over() {
     const feeder::Outcome outcome = run_->outcome;
     context_.trace.note(context_.now, "run ends", static_cast<std::uint64_t>(outcome.code), outcome.issued ? 1 : 0);
     wire_.host_closes(run_->connection);
-    const bool storage_failed = run_->store.failed();
+    const std::string storage_failure = run_->store.failure();
     run_.reset();
     steps_to_live_.reset();
     paused_until_ = {};
-    if (storage_failed) {
+    if (!storage_failure.empty()) {
+        if (RamDisk::instance().refusals() == refusals_before_) {
+            judge_.violation("the storage failed without a fault: " + storage_failure);
+        }
         end_process(feeder::OutcomeCode::storage_failed);
         return;
     }

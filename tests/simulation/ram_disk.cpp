@@ -106,6 +106,7 @@ int RamDisk::write(RamFile& file, std::size_t offset, const char* data, std::siz
     }
     const std::size_t end = offset + size;
     if (full_ && end > file.bytes.size()) {
+        ++refusals_;
         return SQLITE_FULL;
     }
     if (remembers_unsynced_) {

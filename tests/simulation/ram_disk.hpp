@@ -48,6 +48,8 @@ public:
     void lose_power(Random& random);
     void set_full(bool full) { full_ = full; }
     [[nodiscard]] std::uint64_t syncs() const { return syncs_; }
+    /// Writes that found the disk full.
+    [[nodiscard]] std::uint64_t refusals() const { return refusals_; }
 
     // For the VFS
     [[nodiscard]] std::shared_ptr<RamFile> open(const char* name);
@@ -67,6 +69,7 @@ private:
     std::map<std::string, std::shared_ptr<RamFile>> files_;
     std::uint64_t writes_left_ = forever;
     std::uint64_t syncs_ = 0;
+    std::uint64_t refusals_ = 0;
     bool remembers_unsynced_ = false;
     bool full_ = false;
 };

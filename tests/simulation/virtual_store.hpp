@@ -25,7 +25,8 @@ public:
     [[nodiscard]] std::vector<daemon::StoreReply> take_replies() { return work_.take_replies(); }
     /// The End request is carried out.
     [[nodiscard]] bool ended() const { return work_.ended() && !busy_; }
-    [[nodiscard]] bool failed() const { return !work_.failure().empty(); }
+    /// What went wrong with the storage; empty = nothing.
+    [[nodiscard]] const std::string& failure() const { return work_.failure(); }
     /// The disk is slow until then.
     void slow_until(Instant until) { slow_until_ = until; }
     /// The process dies: the operation under way is cut off somewhere.

@@ -55,15 +55,19 @@ void Wire::put(Connection& connection, bool to_printer, std::string_view bytes) 
     chunk.connection = connection.id;
     chunk.to_printer = to_printer;
     chunk.bytes.assign(bytes);
-    if (context_.scenario.damage > 0 && random_.chance(context_.scenario.damage)) {
+    const bool noise = context_.scenario.damage > 0 && random_.chance(context_.scenario.damage);
+    if (noise && !(to_printer && noise_to_printer_)) {
         damage(chunk.bytes, to_printer);
+    }
+    if (to_printer) {
+        noise_to_printer_ = noise;
     }
     context_.queue.put(last, EventKind::chunk, index);
 }
 
 /// A serial line loses a byte, or makes one of another. Without CRC32 nobody can tell a digit from another, or a letter
 /// on a product: so a digit of an answer becomes no other digit, and of what goes to the printer only the ends of
-/// frames are hit.
+/// frames are hit, and no two in a row, which would make one frame of two.
 void Wire::damage(std::string& bytes, bool to_printer) {
     std::size_t at = random_.below(bytes.size());
     if (to_printer) {

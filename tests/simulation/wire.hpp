@@ -72,6 +72,7 @@ private:
     Instant stalled_until_{};
     std::uint64_t last_id_ = 0;
     bool down_ = false;
+    bool noise_to_printer_ = false; ///< on the last chunk
 };
 
 } // namespace linefeed::simulation

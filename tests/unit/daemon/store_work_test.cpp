@@ -167,6 +167,26 @@ TEST_F(StoreWorkTest, shouldCallNothingUnusedThatTheFeederHasConfirmed) {
     EXPECT_TRUE(in_state(RecordState::unused).empty());
 }
 
+TEST_F(StoreWorkTest, shouldTakeTheFinalVerdictBehindTheProvisionalOne) {
+    StoreWork store = work(closed(1, 500));
+    store.take(feeder::BeginRun{});
+    store.take(feeder::ConfirmPrinted{RecordNumber{130}, {}});
+    feeder::Settle first_look;
+    first_look.verdict.printed = closed(131, 140);
+    first_look.provisional = true;
+    first_look.confirmed_through = RecordNumber{130};
+    store.take(first_look);
+    feeder::Settle final_look;
+    final_look.verdict.in_doubt = closed(141, 141);
+    final_look.confirmed_through = RecordNumber{140};
+    store.take(final_look);
+    store.take(feeder::End{});
+    EXPECT_EQ(store.failure(), "");
+    EXPECT_EQ(in_state(RecordState::printed), Ranges{closed(1, 140)});
+    EXPECT_EQ(in_state(RecordState::in_doubt), Ranges{closed(141, 141)});
+    EXPECT_EQ(in_state(RecordState::unused), Ranges{closed(142, 500)});
+}
+
 TEST_F(StoreWorkTest, shouldReadNothingWhenATakenOverPrinterHoldsTheLastRecord) {
     crash(closed(1, 300));
     StoreWork store = work(closed(1, 300));
@@ -237,6 +257,22 @@ TEST_F(Delivery, shouldBringGrantPageAndIntents) {
     deliver_now(PageReady{pages.front().get()});
     deliver_now(Durable{RecordNumber{10}});
     EXPECT_THAT(host.sent(), testing::HasSubstr("^0=MR10\trecord 10\n"));
+}
+
+TEST_F(Delivery, shouldBringTheEndOfTheRun) {
+    wait_for_grant();
+    deliver_now(Granted{closed(1, 1000), RecordNumber{10}});
+    deliver_now(EndKnown{RecordNumber{10}});
+    host.sent();
+    host.receive("^0=SM256\t0\t0\t0\t1\r");
+    EXPECT_THAT(host.sent(), testing::HasSubstr("^0=CM10\n"));
+}
+
+TEST_F(Delivery, shouldStopTheLineWhenTheSupplyFails) {
+    host.print(pages);
+    host.sent();
+    deliver_now(SupplyFailed{});
+    EXPECT_THAT(host.sent(), testing::HasSubstr("^0!ST\n"));
 }
 
 TEST_F(Delivery, shouldBringARefusal) {

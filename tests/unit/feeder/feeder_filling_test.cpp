@@ -176,6 +176,17 @@ TEST(FeederFilling, shouldAskTheCounterWhenEntriesAreMissingAndNoStopPointStands
     EXPECT_EQ(story.feeder.refill().printed_through(), RecordNumber{103});
 }
 
+/// Somebody has started and stopped a printer that keeps no stop point: the line would run dry at once.
+TEST(FeederFilling, shouldNotStartWithAPartOfTheFill) {
+    Story story = reach(Phase::verifying);
+    story.sm(1, 77, 110);
+    story.expect("?SM");
+    story.sm(1, 77, 110);
+    story.expect("!ST; ?RS");
+    story.judge(1, 77, true, 1000);
+    EXPECT_NE(story.take().find("unused 101-104 by mail status"), std::string::npos);
+}
+
 TEST(FeederFilling, shouldNotStartWithRecordsOfSomebodyElseInThePrinter) {
     Story story = reach(Phase::verifying);
     story.sm(5, 77, 110);
@@ -197,6 +208,8 @@ TEST(FeederFilling, shouldGetUsedToAPrinterThatCountsTheLoadedRecordToo) {
     story.sm(3, 101, 110);
     story.sm(3, 101, 110);
     EXPECT_NE(story.take().find("=MR 105-105"), std::string::npos);
+    story.sm(0, 106, 110); // it was not sent
+    story.expect("!ST; ?RS");
 }
 
 TEST(FeederFilling, shouldStopWhenThePrinterTakesNoRecords) {

@@ -111,6 +111,10 @@ TEST(FeederPrinting, shouldStopWhenThePrinterHasNoRoomForWhatItShouldHaveRoomFor
     story.expect("!ST; ?RS");
     story.judge(0, 103, true, 1003, no_room);
     EXPECT_NE(story.take().find("in doubt 102-105"), std::string::npos);
+
+    story = reach(Phase::printing); // the printer has stopped before it could be seen
+    story.judge(0, 103, true, 1003, no_room);
+    EXPECT_NE(story.take().find("in doubt 101-104"), std::string::npos);
 }
 
 /// `=MR 104` gets lost on a serial line: the entries show it, and the counter settles it.

@@ -132,11 +132,16 @@ TEST(Reconcile, shouldDoubtAPrintThatWasBrokenOffBehindALaterNumberToo) {
 }
 
 TEST(Reconcile, shouldBelieveTheNumberAloneWhenTheCounterIsMissing) {
-    EXPECT_EQ(verdict(run_with(110), says(115, std::nullopt)),
-              "printed 111-115, in doubt none, unused 116-120 by mail status");
+    const std::string by_number = "printed 111-115, in doubt none, unused 116-120 by mail status";
     OpenRun run = run_with(110);
     run.total_before.reset();
-    EXPECT_EQ(verdict(run, says(115, 1015)), "printed 111-115, in doubt none, unused 116-120 by mail status");
+    EXPECT_EQ(verdict(run, says(115, 1015)), by_number);
+    EXPECT_EQ(verdict(run_with(110), uninterrupted(says(115, std::nullopt))), by_number);
+    // It was answered as the run began, and it could tell whether records were skipped.
+    EXPECT_EQ(verdict(run_with(110), says(115, std::nullopt)), doubt_from_111);
+    Evidence unseen = uninterrupted(says(115, std::nullopt));
+    unseen.restart_unseen = true;
+    EXPECT_EQ(verdict(run_with(110), unseen), doubt_from_111);
 }
 
 TEST(Reconcile, shouldBelieveTheNumberWhenTheCounterDoesNotMove) {
@@ -159,6 +164,9 @@ TEST(Reconcile, shouldDoubtEverythingWhenSomethingElseWasPrintedMeanwhile) {
     Evidence fed = uninterrupted(says(115, 1015));
     fed.fed_by_another = true;
     EXPECT_EQ(verdict(run_with(110), fed), doubt_from_111);
+    Evidence nothing_printed = uninterrupted(says(77, 1000));
+    nothing_printed.fed_by_another = true;
+    EXPECT_EQ(verdict(run_with(100), nothing_printed), nothing_printed_by + "mail status");
 }
 
 TEST(Reconcile, shouldTakeAPrintedEndMarkerForTheProofOfTheLastRecord) {
@@ -170,7 +178,7 @@ TEST(Reconcile, shouldTakeAPrintedEndMarkerForTheProofOfTheLastRecord) {
     EXPECT_EQ(verdict(run, says(121, 1021, false)), by_counter_too) << "it is the marker that is unfinished";
     EXPECT_EQ(verdict(run, uninterrupted(says(121, 1020, false))), by_counter_too);
     EXPECT_EQ(verdict(run, says(121, 1020, false)), "printed none, in doubt 111-120, unused none by mail status");
-    EXPECT_EQ(verdict(run, says(121, std::nullopt)), all_printed);
+    EXPECT_EQ(verdict(run, uninterrupted(says(121, std::nullopt))), all_printed);
     EXPECT_EQ(verdict(run, says(121, 1000)), all_printed) << "a counter that does not move";
     EXPECT_EQ(verdict(run, says(121, 1020)), doubt_from_111) << "a record was skipped";
     EXPECT_EQ(verdict(run, uninterrupted(says(121, 1020))), doubt_from_111);
