@@ -1,4 +1,5 @@
 // The command line of linefeed. CLI11 stays in this file.
+#include "cli/check_config_command.hpp"
 #include "cli/ledger_command.hpp"
 #include "cli/print_command.hpp"
 #include "cli/record_ranges.hpp"
@@ -10,6 +11,7 @@
 
 namespace {
 
+using linefeed::cli::CheckConfigOptions;
 using linefeed::cli::ExitCode;
 using linefeed::cli::InDoubtPolicy;
 using linefeed::cli::JobsOptions;
@@ -194,6 +196,18 @@ CLI::App& add_ledger(CLI::App& app, LedgerOptions& options, RawLedgerOptions& ra
     return ledger;
 }
 
+CLI::App& add_check_config(CLI::App& app, CheckConfigOptions& options, std::string& output) {
+    CLI::App& check = *app.add_subcommand("check-config",
+                                          "Check the configuration of the service and show the settings that it gives");
+    check.footer("Variables of the environment go before the file: LINEFEED_HTTP_PORT is http.port.\n"
+                 "Exit codes: 0 good, 2 refused: each problem with file, line and column on stderr.");
+    check.add_option("FILE", options.file, "The configuration, YAML; see config/linefeed.yaml")->required();
+    check.add_option("-o,--output", output, "text (YAML) or json")
+        ->capture_default_str()
+        ->check(CLI::IsMember({"text", "json"}));
+    return check;
+}
+
 ExitCode usage_error(const std::string& problem) {
     std::cerr << "linefeed: " << problem << '\n';
     return ExitCode::usage;
@@ -207,13 +221,16 @@ ExitCode run(int argc, char** argv) {
     PrintOptions print;
     JobsOptions jobs;
     LedgerOptions ledger;
+    CheckConfigOptions check_config;
     print.spool = jobs.spool = ledger.spool = default_spool();
     RawPrintOptions raw_print;
     RawLedgerOptions raw_ledger;
     std::string jobs_output{"text"};
+    std::string check_config_output{"text"};
     add_print(app, print, raw_print);
     const CLI::App& jobs_command = add_jobs(app, jobs, jobs_output);
     const CLI::App& ledger_command = add_ledger(app, ledger, raw_ledger);
+    const CLI::App& check_config_command = add_check_config(app, check_config, check_config_output);
     try {
         app.parse(argc, argv);
     } catch (const CLI::Success& success) {
@@ -235,6 +252,10 @@ ExitCode run(int argc, char** argv) {
             }
         }
         return linefeed::cli::run_ledger(ledger);
+    }
+    if (check_config_command.parsed()) {
+        check_config.json = check_config_output == "json";
+        return linefeed::cli::run_check_config(check_config);
     }
     if (const std::string problem = finish_options(print, raw_print); !problem.empty()) {
         return usage_error(problem);

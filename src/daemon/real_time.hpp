@@ -3,21 +3,13 @@
 // what is not permitted is said in one line, and the thread goes on without.
 #pragma once
 
-#include <optional>
+#include "base/real_time_settings.hpp"
+
 #include <string>
 
 namespace linefeed::daemon {
 
-struct RealTimeSettings {
-    /// SCHED_FIFO with this priority, 1…99.
-    std::optional<int> priority{};
-    /// The thread runs on this processor only, 0….
-    std::optional<int> processor{};
-    /// The memory of the whole process stays in RAM, and the thread's stack is touched beforehand.
-    bool lock_memory = false;
-
-    [[nodiscard]] bool wanted() const { return priority || processor || lock_memory; }
-};
+using linefeed::RealTimeSettings;
 
 /// Asks for what is wanted, for the calling thread. Returns one line for people: what was granted, and for what was not
 /// the reason and the remedy.

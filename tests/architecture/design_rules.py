@@ -13,8 +13,9 @@ MAY_USE = {
     "spool": {"base"},
     "intake": {"base", "protocol", "spool"},
     "simulator": {"base", "protocol"},
-    "daemon": {"base", "protocol", "feeder", "session", "link", "spool", "intake"},
-    "cli": {"base", "protocol", "feeder", "session", "link", "spool", "intake", "daemon"},
+    "config": {"base", "protocol", "feeder", "link"},
+    "daemon": {"base", "protocol", "feeder", "session", "link", "spool", "intake", "config"},
+    "cli": {"base", "protocol", "feeder", "session", "link", "spool", "intake", "config", "daemon"},
 }
 
 # Folder -> folder -> the only headers of the second that the first may include: the feeder knows the message types, never bytes.
@@ -60,5 +61,6 @@ LIBRARY_FOLDERS = {
     r"boost/(asio|beast)(/.*|\.hpp)?": {"base", "link", "simulator", "daemon"},
     r"CLI/.*": {"cli", "simulator"},
     r"openssl/.*": {"spool"},
-    r"nlohmann/.*": {"spool", "simulator", "daemon", "cli"},
+    r"yaml-cpp/.*": {"config"},
+    r"nlohmann/.*": {"spool", "simulator", "config", "daemon", "cli"},
 }
