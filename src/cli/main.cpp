@@ -1,15 +1,18 @@
 // The command line of linefeed. CLI11 stays in this file.
+#include "cli/drop_command.hpp"
 #include "cli/ledger_command.hpp"
 #include "cli/print_command.hpp"
 #include "cli/record_ranges.hpp"
 
 #include <CLI/CLI.hpp>
 
+#include <chrono>
 #include <cstdlib>
 #include <iostream>
 
 namespace {
 
+using linefeed::cli::DropOptions;
 using linefeed::cli::ExitCode;
 using linefeed::cli::InDoubtPolicy;
 using linefeed::cli::JobsOptions;
@@ -187,6 +190,59 @@ void add_output(CLI::App& command, std::string& output) {
         ->check(CLI::IsMember({"text", "json"}));
 }
 
+struct RawDropOptions {
+    RawLayout layout;
+    std::string mode{"auto"};
+    std::string settle{"quiet=2s"};
+    std::optional<double> rescan_s;
+    std::string output{"text"};
+};
+
+CLI::App& add_drop(CLI::App& app, DropOptions& options, RawDropOptions& raw) {
+    CLI::App& drop = *app.add_subcommand("drop", "Import what is dropped into a folder into jobs, until Ctrl-C");
+    drop.footer("A file is claimed into processing/, imported, and ends in done/ or failed/, with a report beside it.\n"
+                "Nothing is printed. Exit codes: 0 ended, 4 an import was broken off (the next start takes it up),\n"
+                "5 with --once: a file was rejected, 2 usage, 1 anything else.");
+    drop.add_option("FOLDER", options.settings.folder, "The folder")->required();
+    drop.add_option("--pattern", options.settings.pattern, "Names of the files to take, as in the shell")
+        ->capture_default_str();
+    drop.add_option("--settle", raw.settle,
+                    "When a file is complete: quiet=TIME (unchanged for that time, in ms, s or min), rename (at once: "
+                    "files are renamed into the folder) or done (when NAME.done lies beside NAME)")
+        ->capture_default_str();
+    drop.add_option("--mode", raw.mode, "inotify, poll, or auto: poll on network file systems only")
+        ->capture_default_str()
+        ->check(CLI::IsMember({"auto", "inotify", "poll"}));
+    drop.add_option("--rescan", raw.rescan_s, "Seconds between two looks at the whole folder; inotify 30, poll 1")
+        ->check(CLI::Range(0.05, 86400.0));
+    drop.add_option("--max-bytes", options.settings.max_bytes, "Larger files are rejected unread")
+        ->capture_default_str();
+    drop.add_flag("--once", options.once, "Import what is there now, and end");
+    add_layout(drop, options.settings.layout, raw.layout);
+    drop.add_option("--spool", options.spool, "Database of jobs and the print ledger")->capture_default_str();
+    add_output(drop, raw.output);
+    return drop;
+}
+
+/// What is wrong with the options, or nothing.
+std::string finish_options(DropOptions& options, const RawDropOptions& raw) {
+    options.json = raw.output == "json";
+    if (raw.mode != "auto") {
+        options.settings.mode =
+            raw.mode == "poll" ? linefeed::intake::WatchMode::poll : linefeed::intake::WatchMode::inotify;
+    }
+    if (raw.rescan_s) {
+        options.settings.rescan =
+            std::chrono::duration_cast<linefeed::Duration>(std::chrono::duration<double>{*raw.rescan_s});
+    }
+    const auto settle = linefeed::intake::parse_settle_rule(raw.settle);
+    if (!settle) {
+        return "--settle " + raw.settle + ": expected rename, done or quiet=TIME, for example quiet=2s";
+    }
+    options.settings.settle = *settle;
+    return finish_layout(options.settings.layout, raw.layout);
+}
+
 CLI::App& add_jobs(CLI::App& app, JobsOptions& options, std::string& output) {
     CLI::App& jobs = *app.add_subcommand("jobs", "List the jobs in the spool and how far they are");
     jobs.add_option("--spool", options.spool, "Database of jobs and the print ledger")->capture_default_str();
@@ -225,11 +281,14 @@ ExitCode run(int argc, char** argv) {
     PrintOptions print;
     JobsOptions jobs;
     LedgerOptions ledger;
-    print.spool = jobs.spool = ledger.spool = default_spool();
+    DropOptions drop;
+    print.spool = jobs.spool = ledger.spool = drop.spool = default_spool();
     RawPrintOptions raw_print;
     RawLedgerOptions raw_ledger;
+    RawDropOptions raw_drop;
     std::string jobs_output{"text"};
     add_print(app, print, raw_print);
+    const CLI::App& drop_command = add_drop(app, drop, raw_drop);
     const CLI::App& jobs_command = add_jobs(app, jobs, jobs_output);
     const CLI::App& ledger_command = add_ledger(app, ledger, raw_ledger);
     try {
@@ -239,6 +298,10 @@ ExitCode run(int argc, char** argv) {
     } catch (const CLI::ParseError& error) {
         return usage_error(std::string{error.what()} +
                            " (linefeed --help, or linefeed COMMAND --help, shows the options)");
+    }
+    if (drop_command.parsed()) {
+        const std::string problem = finish_options(drop, raw_drop);
+        return problem.empty() ? linefeed::cli::run_drop(drop) : usage_error(problem);
     }
     if (jobs_command.parsed()) {
         jobs.json = jobs_output == "json";
