@@ -227,7 +227,7 @@ Result<std::optional<FileLook>> DropDirectory::look(const std::string& name) con
 Result<std::optional<std::string>> DropDirectory::claim(const std::string& name) {
     for (unsigned attempt = 1; attempt < most_attempts; ++attempt) {
         const std::string kept = kept_name(name, attempt);
-        int error = kept == lock_name ? EEXIST : 0;
+        int error = kept == lock_name || kept == draft_name ? EEXIST : 0;
         for (const Descriptor* const directory : {&processing_, &done_, &failed_}) {
             error = error == 0 ? check_free(directory->get(), kept) : error;
         }

@@ -33,12 +33,12 @@
 namespace linefeed::intake {
 
 struct DropSettings {
-    std::filesystem::path folder;
+    std::filesystem::path folder{};
     std::string pattern = "*.csv"; ///< shell pattern, see is_batch_name()
-    SettleRule settle;
-    std::optional<WatchMode> mode;  ///< absent = inotify, but poll on network file systems
-    std::optional<Duration> rescan; ///< see watch_folder()
-    Layout layout;
+    SettleRule settle{};
+    std::optional<WatchMode> mode{};  ///< absent = inotify, but poll on network file systems
+    std::optional<Duration> rescan{}; ///< see watch_folder()
+    Layout layout{};
     std::uint64_t max_bytes = std::uint64_t{64} << 30U; ///< larger files fail unread
 };
 
