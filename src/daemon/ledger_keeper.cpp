@@ -23,9 +23,9 @@ RecordRange behind(RecordRange range, RecordNumber last) {
     return RecordRange::closed(std::max(range.first(), last.next()), range.last());
 }
 
-/// `range` without its part behind `last`.
+/// `range` without its part behind `last`, which is not before its first record.
 RecordRange up_to(RecordRange range, RecordNumber last) {
-    return range.empty() ? range : RecordRange::closed(range.first(), std::min(range.last(), last));
+    return RecordRange::closed(range.first(), std::min(range.last(), last));
 }
 
 } // namespace
@@ -63,9 +63,10 @@ Result<std::optional<OpenIssue>> find_open_issue(spool::Spool& spool, spool::Job
                    issue.records.last(),        start->serial_number,
                    start->total_before,         start->last_printed_before};
     const auto stored_job = spool.job(job);
-    if (!stored_job || !*stored_job) {
-        return stored_job ? Failure{FailureKind::internal, "an open run without its job"} : stored_job.error();
+    if (!stored_job) {
+        return stored_job.error();
     }
+    LINEFEED_ASSERT(stored_job->has_value());                    // a job that stands in the ledger stays
     if ((*stored_job)->state != spool::ImportState::importing) { // the run may have begun before the end was known
         issue.run_range = up_to(issue.run_range, (*stored_job)->records.last());
     }

@@ -166,8 +166,7 @@ RecordRange StoreWork::readable() const {
     if (supply_ == nullptr || to_read_.empty()) {
         return to_read_;
     }
-    const RecordRange there = supply_->durable();
-    return there.empty() ? there : RecordRange::closed(to_read_.first(), std::min(to_read_.last(), there.last()));
+    return RecordRange::closed(to_read_.first(), std::min(to_read_.last(), supply_->durable().last()));
 }
 
 /// A slow source makes small pages. So that those lent hold a first fill for sure, half of them are kept for pages that
@@ -214,7 +213,7 @@ void StoreWork::supply_step() {
 
 void StoreWork::take_supply() {
     const RecordRange there = supply_->durable();
-    keeper_.imported(there.empty() ? RecordNumber{} : there.last());
+    keeper_.imported(there.last());
     if (supply_->end_known()) {
         supply_over_ = true;
         keeper_.end_at(there.last());

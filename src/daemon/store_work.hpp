@@ -56,7 +56,7 @@ void deliver(const StoreReply& reply, session::Session& session, Instant now, se
 /// read_ahead() when nothing else is to do, then supply_step(); take_replies() after each. The End request is the last.
 class StoreWork {
 public:
-    /// `supply` = the import of the job, if it is still running; it must outlive this.
+    /// `supply` = the import of the job, if it is still running, with records that are durable; it must outlive this.
     StoreWork(spool::Spool& spool, spool::JobId job, LedgerKeeper keeper, Supply* supply = nullptr);
 
     void take(const StoreRequest& request);

@@ -147,10 +147,8 @@ void Feeder::locate_step(Instant now, Actions& out) {
         return;
     }
     const bool print_in_progress = !mail_.last_print_finished && status_.machine != MachineState::printing;
-    if (print_in_progress && mail_reads_ >= 2) {
-        broken_off_ = mail_.last_printed;
-    } else if (mail_.last_printed == broken_off_) {
-        broken_off_ = RecordNumber{}; // it has finished after all
+    if (mail_reads_ >= 2 && status_.machine != MachineState::printing) {
+        note_unfinished();
     }
     const bool not_flushed = phase_ == Phase::clearing && mail_.entries > 0;
     if (mail_reads_ < 2) {
@@ -161,6 +159,16 @@ void Feeder::locate_step(Instant now, Actions& out) {
         end(OutcomeCode::fifo_not_flushed, out); // what lies there may still be printed: its fate stays open
     } else {
         ask(Parameter::CC, now, out);
+    }
+}
+
+/// The printer has been stopped, and the print in progress may be broken off. Should it print on behind it, somebody
+/// has started it again.
+void Feeder::note_unfinished() {
+    if (mail_.last_print_finished) {
+        broken_off_ = mail_.last_printed == broken_off_ ? RecordNumber{} : broken_off_;
+    } else if (broken_off_ == RecordNumber{}) {
+        broken_off_ = mail_.last_printed;
     }
 }
 

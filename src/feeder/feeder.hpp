@@ -186,6 +186,7 @@ private:
         impossible, ///< more records than were sent
     };
     [[nodiscard]] Report judge_report();
+    void note_unfinished();
     void watch_for_missing();
     void doubt_number();
     [[nodiscard]] bool take_report(Instant now, Actions& out);
@@ -198,6 +199,7 @@ private:
     [[nodiscard]] bool stop_point_vanished(Instant now, Actions& out);
     void stop_suspected(Instant now, Actions& out);
     void insist_on_stop_point(Actions& out);
+    void set_stop_point_again(Actions& out);
     void all_printed(Instant now, Actions& out);
     void refill_now(Actions& out);
 
@@ -280,16 +282,15 @@ private:
     std::optional<std::uint32_t> total_before_;
     StopPoint stop_point_ = StopPoint::unset;
     int stop_point_tries_ = 0;
-    int stop_point_misses_ = 0; ///< answers without the stop point since it was sent
     StopMove stop_move_ = StopMove::none;
     std::optional<RecordNumber> old_stop_point_; ///< set before the end was known; the new one has not been read back
-    int old_answers_left_ = 0;                   ///< answers that may be from before this step of the move
-    bool supply_noticed_ = false;                ///< low, and said so
-    std::optional<Instant> suspected_since_;     ///< the stop point vanished: nothing is sent before `?RS` has told why
-    bool restarted_ = false;      ///< stopped and started again at the printer, as records were on their way
-    bool fed_by_another_ = false; ///< by what was reported while it printed
-    RecordNumber broken_off_;     ///< a print that was not finished when the printer stood; 0 = none
-    bool memory_lost_ = false;    ///< the reported number went back
+    int old_answers_left_ = 0;               ///< answers that may be from before `=CM`, or before this step of its move
+    bool supply_noticed_ = false;            ///< low, and said so
+    std::optional<Instant> suspected_since_; ///< the stop point vanished: nothing is sent before `?RS` has told why
+    bool restarted_ = false;                 ///< stopped and started again at the printer, as records were on their way
+    bool fed_by_another_ = false;            ///< by what was reported while it printed
+    RecordNumber broken_off_;                ///< a print that was not finished when the printer stood; 0 = none
+    bool memory_lost_ = false;               ///< the reported number went back
     std::optional<Instant> all_printed_at_;
     bool marker_sent_ = false;
     bool any_sent_ = false;

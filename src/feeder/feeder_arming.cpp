@@ -250,8 +250,7 @@ void Feeder::start_answered(Instant now, Actions& out) {
         enter(Phase::printing, now, Duration::max());
         out.push_back(Notice{NoticeCode::printing_started, {}});
         if (stop_point_ == StopPoint::unset) {
-            out.push_back(SetStopAt{refill_.range().last()});
-            ++stop_point_tries_;
+            set_stop_point_again(out);
         }
         status_due_ = now + settings_.status_interval;
         if (mail_outstanding_ == 0) {

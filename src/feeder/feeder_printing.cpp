@@ -210,8 +210,10 @@ bool Feeder::stop_point_vanished(Instant now, Actions& out) {
         stop_point_ = StopPoint::kept;
         suspected_since_.reset();
         restarted_ = false;
+        broken_off_ = RecordNumber{};
         return false;
     }
+    note_unfinished();
     if (!suspected_since_) {
         suspected_since_ = now;
         ask(Parameter::RS, now, out);
@@ -227,6 +229,7 @@ void Feeder::stop_suspected(Instant now, Actions& out) {
         stop_move_ = StopMove::none;
         old_stop_point_.reset();
         suspected_since_.reset();
+        broken_off_ = RecordNumber{};
         return;
     }
     restarted_ = mail_.last_printed != refill_.range().last();
@@ -248,16 +251,22 @@ void Feeder::insist_on_stop_point(Actions& out) {
         stop_point_ = StopPoint::kept;
         return;
     }
-    if (++stop_point_misses_ % 2 != 0) {
-        return; // the first of two answers may be old
+    if (old_answers_left_ > 0) {
+        --old_answers_left_;
+        return;
     }
     if (stop_point_tries_ < max_stop_point_tries) {
-        ++stop_point_tries_;
-        out.push_back(SetStopAt{refill_.range().last()});
+        set_stop_point_again(out);
         return;
     }
     stop_point_ = StopPoint::ignored;
     out.push_back(Notice{NoticeCode::stop_point_ignored, {}});
+}
+
+void Feeder::set_stop_point_again(Actions& out) {
+    ++stop_point_tries_;
+    out.push_back(SetStopAt{refill_.range().last()});
+    await_new_answers();
 }
 
 void Feeder::refill_now(Actions& out) {

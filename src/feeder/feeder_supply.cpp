@@ -65,10 +65,8 @@ void Feeder::on_end_known(RecordNumber last, Instant now, Actions& out) {
 }
 
 void Feeder::move_stop_point(Actions& out) {
-    ++stop_point_tries_;
     stop_move_ = StopMove::sent;
-    await_new_answers();
-    out.push_back(SetStopAt{refill_.range().last()});
+    set_stop_point_again(out);
 }
 
 /// The inquiries under way were asked before now, and the answer behind theirs may be one inquiry old.

@@ -103,8 +103,7 @@ void Feeder::taken_over(RecordRange range, RecordNumber durable_through, Instant
     out.push_back(Notice{NoticeCode::printing_started, {}});
     stop_point_ = mail_.stop_at == range.last() ? StopPoint::kept : StopPoint::unset;
     if (stop_point_ == StopPoint::unset) {
-        out.push_back(SetStopAt{range.last()});
-        ++stop_point_tries_;
+        set_stop_point_again(out);
     }
     status_due_ = now + settings_.status_interval;
     ask(Parameter::SM, now, out);

@@ -17,6 +17,8 @@ constexpr std::size_t import_transaction_bytes = std::size_t{8} * 1024 * 1024;
 /// The WAL is copied into the database whenever so much has come in: that takes two syncs more, so not behind each
 /// transaction where those are small.
 constexpr std::size_t checkpoint_bytes = std::size_t{8} * 1024 * 1024;
+/// What a transaction adds to the WAL at most besides its records: whole pages of the database, however few records.
+constexpr std::size_t transaction_overhead_bytes = std::size_t{64} * 1024;
 
 /// The records of `page` from `first` on.
 RecordPage tail_of(const RecordPage& page, RecordNumber first) {
@@ -136,7 +138,7 @@ Result<void> JobImport::State::write_waiting() {
     stored = records;
     new_source = false;
     waiting.clear();
-    behind_checkpoint_bytes += std::exchange(waiting_bytes, 0);
+    behind_checkpoint_bytes += std::exchange(waiting_bytes, 0) + transaction_overhead_bytes;
     if (const auto ledger = spool->ledgers.find(static_cast<std::int64_t>(job.id)); ledger != spool->ledgers.end()) {
         ledger->second.records = job.records;
         ledger->second.complete = job.state == ImportState::ready;

@@ -22,6 +22,7 @@ import unittest
 BIN = pathlib.Path(os.environ.get("LINEFEED_BIN_DIR", pathlib.Path(__file__).resolve().parents[2] / "build/release/bin"))
 LONG = os.environ.get("LINEFEED_LONG_TESTS", "") not in ("", "0")
 PATIENCE_S = 60  # longest wait for a program that should end by itself
+TAPE_DELAY_S = 5
 
 
 class Result:
@@ -311,8 +312,14 @@ class TestCase(unittest.TestCase):
             self.assertIn(word, result.errors[0])
 
     def assert_printed(self, expected, *simulators):
-        """The tapes, one after the other, hold exactly `expected`: [(number, text)], each once, in order."""
-        printed = [line for simulator in simulators for line in simulator.prints()]
+        """The tapes, one after the other, hold exactly `expected`: [(number, text)], each once, in order. A simulator writes its tape behind
+        the print, so the last lines may be a moment late."""
+        deadline = time.monotonic() + TAPE_DELAY_S
+        while True:
+            printed = [line for simulator in simulators for line in simulator.prints()]
+            if len(printed) >= len(expected) or time.monotonic() > deadline:
+                break
+            time.sleep(0.02)
         self.judge(expected, printed)
 
     def judge(self, expected, printed):

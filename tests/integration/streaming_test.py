@@ -368,7 +368,7 @@ class StreamingFailures(SlowSource):
     def test_disk_that_takes_no_more(self):
         """The import and the ledger cannot be written any further: nothing is printed that is not known to be."""
         printer = self.simulator("--rate", RATE)
-        limited = ["sh", "-c", "trap '' XFSZ; ulimit -f 2000; exec \"$@\"", "sh"]
+        limited = ["sh", "-c", "trap '' XFSZ; ulimit -f 4000; exec \"$@\"", "sh"]
         job = harness.Job([*limited, *self.command(self.file, printer, *self.options())])
         self.addCleanup(job.kill)
         result = job.wait()

@@ -174,6 +174,27 @@ TEST_F(LedgerKeeperTest, shouldFindWhatACrashLeftOpen) {
                                              RecordNumber{77}, RecordNumber{1999}}));
 }
 
+TEST_F(LedgerKeeperTest, shouldFindTheEndOfACrashedRunWhenTheImportHasReachedIt) {
+    RecordPage page{RecordNumber{1}, {}, {}};
+    for (std::uint32_t number = 1; number <= 300; ++number) {
+        page.frames += "^0=MR" + std::to_string(number) + "\tx\r";
+        page.ends.push_back(static_cast<std::uint32_t>(page.frames.size()));
+    }
+    auto import = spool_->begin_import({}).value();
+    job_ = import.id();
+    import.add(page).value();
+    import.flush().value();
+    LedgerKeeper ledger = keeper(closed(1, 5000)); // nobody knows how many come
+    ledger.imported(RecordNumber{300});
+    EXPECT_EQ(ledger.grant(begin())->range, closed(1, 5000));
+    EXPECT_EQ(in_state(RecordState::open), Ranges{closed(1, 300)});
+    EXPECT_EQ(find_open_issue(*spool_, job_).value()->run_range, closed(1, 5000)) << "the import goes on";
+    import.commit({}).value();
+    const auto found = find_open_issue(*spool_, job_).value();
+    EXPECT_EQ(found->run_range, closed(1, 300));
+    EXPECT_EQ(found->facts.last, RecordNumber{300});
+}
+
 TEST_F(LedgerKeeperTest, shouldSettleACrashedRunBeforeTheNext) {
     crash();
     LedgerKeeper ledger = keeper();

@@ -259,6 +259,22 @@ TEST_F(Delivery, shouldBringGrantPageAndIntents) {
     EXPECT_THAT(host.sent(), testing::HasSubstr("^0=MR10\trecord 10\n"));
 }
 
+TEST_F(Delivery, shouldBringTheEndOfTheRun) {
+    wait_for_grant();
+    deliver_now(Granted{closed(1, 1000), RecordNumber{10}});
+    deliver_now(EndKnown{RecordNumber{10}});
+    host.sent();
+    host.receive("^0=SM256\t0\t0\t0\t1\r");
+    EXPECT_THAT(host.sent(), testing::HasSubstr("^0=CM10\n"));
+}
+
+TEST_F(Delivery, shouldStopTheLineWhenTheSupplyFails) {
+    host.print(pages);
+    host.sent();
+    deliver_now(SupplyFailed{});
+    EXPECT_THAT(host.sent(), testing::HasSubstr("^0!ST\n"));
+}
+
 TEST_F(Delivery, shouldBringARefusal) {
     wait_for_grant();
     deliver_now(Refused{feeder::OutcomeCode::records_in_doubt});

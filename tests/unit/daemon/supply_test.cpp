@@ -6,9 +6,11 @@
 #include "spool_job.hpp"
 
 #include <gmock/gmock.h>
+#include <sqlite3.h>
 
 #include <chrono>
 #include <functional>
+#include <string>
 #include <utility>
 
 namespace linefeed::daemon {
@@ -24,10 +26,11 @@ public:
     explicit SupplyDouble(spool::JobImport import)
         : import_(std::move(import)) {}
 
-    void add(std::uint32_t count) {
+    void add(std::uint32_t count, std::size_t text_bytes = 1) {
         RecordPage page{import_.durable().first() + import_.added(), {}, {}};
         for (std::uint32_t k = 0; k < count; ++k) {
-            page.frames += "^0=MR" + std::to_string((page.first + RecordCount{k}).value()) + "\tx\r";
+            page.frames += "^0=MR" + std::to_string((page.first + RecordCount{k}).value()) + '\t' +
+                           std::string(text_bytes, 'x') + '\r';
             page.ends.push_back(static_cast<std::uint32_t>(page.frames.size()));
         }
         import_.add(page).value();
@@ -151,6 +154,31 @@ TEST_F(SupplyTest, shouldLendTheSmallPagesOfASlowSourceTogether) {
     }
     step(store, [this] { supply_->add(10); });
     EXPECT_EQ(read_all(store), Ranges{closed(there + 1, there + 260)});
+}
+
+TEST_F(SupplyTest, shouldNotLendMoreBytesTogetherThanAPageHolds) {
+    for (int k = 0; k < 3; ++k) {
+        supply_->add(40, 2000); // more than 64 KiB
+    }
+    StoreWork store = work();
+    store.take(feeder::BeginRun{});
+    static_cast<void>(store.take_replies());
+    EXPECT_EQ(read_all(store), (Ranges{closed(1, 40), closed(41, 80), closed(81, 120)}));
+}
+
+TEST_F(SupplyTest, shouldFailWhenASmallPageCannotBeRead) {
+    supply_->add(10);
+    supply_->add(10);
+    StoreWork store = work();
+    store.take(feeder::BeginRun{});
+    static_cast<void>(store.take_replies());
+    sqlite3* other = nullptr;
+    ASSERT_EQ(sqlite3_open((directory_ / "spool.db").c_str(), &other), SQLITE_OK);
+    ASSERT_EQ(sqlite3_exec(other, "DELETE FROM pages WHERE first = 11", nullptr, nullptr, nullptr), SQLITE_OK);
+    sqlite3_close(other);
+    store.read_ahead();
+    only<StorageFailed>(store.take_replies());
+    EXPECT_THAT(store.failure(), HasSubstr("no record 11"));
 }
 
 TEST_F(SupplyTest, shouldTellTheEndWhenItIsKnown) {

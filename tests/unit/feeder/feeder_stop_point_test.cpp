@@ -59,11 +59,13 @@ TEST(FeederStopPoint, shouldSetTheStopPointAgainForAPrinterThatKeepsItOnlyWhileP
 
 TEST(FeederStopPoint, shouldQueueAnEndMarkerForAPrinterThatIgnoresTheStopPoint) {
     Story story = printing_without_stop_point();
-    story.sm(3, 77, 0);
+    story.sm(3, 77, 0); // asked before `=CM`
+    story.sm(3, 77, 0); // may be one inquiry old
     story.expect("");
     story.sm(3, 77, 0);
     story.expect("=CM 110");
     story.sm(3, 77, 0);
+    story.expect("");
     story.sm(3, 77, 0);
     story.expect("=CM 110");
     story.sm(3, 77, 0);
@@ -99,7 +101,7 @@ TEST(FeederStopPoint, shouldQueueAnEndMarkerForAPrinterThatIgnoresTheStopPoint) 
 /// Records up to 108 are reported as printed, and the counter is asked for.
 Story printing_with_marker() {
     Story story = printing_without_stop_point();
-    for (int answers = 0; answers < 6; ++answers) {
+    for (int answers = 0; answers < 7; ++answers) {
         story.sm(3, 77, 0);
     }
     story.sm(0, 104, 0);
@@ -192,7 +194,7 @@ TEST(FeederStopPoint, shouldNotTakeANumberFromBeforeTheRunForItsEndMarker) {
     story.wait(milliseconds{4});
     story.take();
     story.rs(State::printing);
-    for (int answers = 0; answers < 6; ++answers) {
+    for (int answers = 0; answers < 7; ++answers) {
         story.sm(1, 111, 0);
     }
     EXPECT_NE(story.take().find("end marker 111"), std::string::npos);
@@ -245,7 +247,7 @@ TEST(FeederStopPoint, shouldStopAtOnceBehindTheLastRecordWhileTheStopPointIsUnce
     story.cc(1008);
     story.take();
     story.sm(0, 110, 0);
-    story.expect("=CM 110; !ST; ?RS");
+    story.expect("!ST; ?RS");
 }
 
 TEST(FeederStopPoint, shouldSuspectAStopWhenTheStopPointVanishes) {
@@ -282,12 +284,12 @@ TEST(FeederStopPoint, shouldSetAStopPointAgainThatWasKeptOnlyBeforeTheStart) {
     story.rs(State::printing);
     story.expect("");
     story.sm(3, 77, 0);
-    story.expect("");
-    story.sm(2, 101, 0);
-    story.expect("=CM 110; =MR 105-105; ?CC; ?SM; ?SM");
+    story.expect("=CM 110");
+    story.sm(2, 101, 0); // may be from before that
+    story.expect("=MR 105-105; ?CC; ?SM; ?SM");
     story.cc(1001);
     story.sm(2, 101, 0); // may be from before the count
-    story.expect("");
+    story.expect("=CM 110");
     story.sm(2, 101, 110);
     story.expect("printed through 101"); // no stop would have shown, but the counter bears the number out
     story.sm(0, 105, 110);

@@ -14,7 +14,7 @@ constexpr std::uint32_t bound = 200; ///< as far as anybody knows
 Story printing_open_ended(std::uint32_t supplied = 104) {
     Story story;
     story.arm_to_grant();
-    story.granted(Story::first, bound, Story::last);
+    story.granted(Story::first, bound, supplied);
     story.sm(0, 77, 0);
     story.sm(0, 77, bound);
     story.actions.clear();
@@ -100,6 +100,75 @@ TEST(FeederSupply, shouldMoveTheStopPointWhenAllThatWasSentHasArrived) {
         told += story.take();
     }
     EXPECT_NE(told.find("=MR"), std::string::npos);
+}
+
+TEST(FeederSupply, shouldMoveTheStopPointUnderTheLastRecords) {
+    Story story = printing_open_ended(104);
+    end_known(story, 104);
+    story.take();
+    std::string told;
+    for (int answers = 0; answers < 12 && told.find("=CM 104") == std::string::npos; ++answers) {
+        story.sm(0, 103, bound); // half empty, and there is nothing to fill it with
+        told += story.take();
+    }
+    EXPECT_NE(told.find("=CM 104"), std::string::npos) << told;
+    for (int answers = 0; answers < 4; ++answers) {
+        story.sm(0, 103, 104);
+    }
+    EXPECT_EQ(story.phase(), Phase::printing) << "the last record is loaded: an empty FIFO is no loss";
+    story.take();
+    story.sm(0, 104, 104);
+    story.expect("printed through 104; ?RS");
+}
+
+TEST(FeederSupply, shouldStopThePrinterWhenAllIsPrintedBeforeItsStopPointHasMoved) {
+    Story story = printing_open_ended(104);
+    story.sm(0, 103, bound);
+    end_known(story, 104);
+    story.take();
+    story.sm(0, 104, bound);
+    EXPECT_NE(story.take().find("!ST"), std::string::npos);
+}
+
+TEST(FeederSupply, shouldWarnAgainWhenTheSupplyHadCaughtUp) {
+    Story story = printing_open_ended();
+    story.sm(0, 104, bound);
+    EXPECT_NE(story.take().find("notice"), std::string::npos);
+    story.supplied(110);
+    story.durable(110); // more than fits
+    EXPECT_NE(story.take().find("=MR 105-108"), std::string::npos);
+    story.sm(3, 104, bound);
+    story.sm(0, 107, bound);
+    EXPECT_NE(story.take().find("=MR 109-110"), std::string::npos);
+    story.sm(0, 109, bound);
+    story.sm(0, 110, bound);
+    EXPECT_NE(story.take().find("notice"), std::string::npos) << "it had been filled in between";
+}
+
+TEST(FeederSupply, shouldNotWarnOnceMoreWhileTheStopPointMoves) {
+    Story story = printing_open_ended();
+    end_known(story);
+    story.sm(2, 101, bound); // well filled: nothing is sent now
+    story.sm(0, 104, bound);
+    EXPECT_NE(story.take().find("notice"), std::string::npos);
+    story.supplied(110);
+    story.durable(110);
+    story.sm(0, 104, bound);
+    const std::string told = story.take();
+    EXPECT_EQ(told.find("notice"), std::string::npos) << told;
+    EXPECT_EQ(told.find("=MR"), std::string::npos) << told;
+}
+
+TEST(FeederSupply, shouldNotCareAboutTheEndOutsideOfARun) {
+    Story story;
+    story.identify();
+    end_known(story);
+    story.expect("");
+    story.storage_failed();
+    EXPECT_EQ(story.phase(), Phase::ended);
+    story.take();
+    end_known(story);
+    story.expect("");
 }
 
 TEST(FeederSupply, shouldIgnoreAnEndThatIsNotBeforeTheBound) {

@@ -377,7 +377,7 @@ TEST(Session, shouldSendABlankEndMarkerWithTheFieldsOfTheRecords) {
     host.receive(mail(9, 0, 0));
     host.wake(); // !GO
     host.receive(printing);
-    for (int answers = 0; answers < 6; ++answers) {
+    for (int answers = 0; answers < 12; ++answers) {
         host.receive(mail(9, 0, 0));
         host.wake();
     }

@@ -190,6 +190,17 @@ TEST_F(JobImportTest, shouldNotBeStoppedBeforeItsFirstRecord) {
     EXPECT_EQ(stopped.error().kind, FailureKind::input);
 }
 
+TEST_F(JobImportTest, shouldKeepTheWalSmallWhenItIsFlushedRecordByRecord) {
+    Spool spool = open();
+    auto import = spool.begin_import(spec()).value();
+    for (std::uint32_t number = 1; number <= 1000; ++number) {
+        import.add(page_of(number, 1)).value();
+        import.flush().value();
+    }
+    EXPECT_EQ(import.durable(), range(1, 1000));
+    EXPECT_LT(std::filesystem::file_size(path.string() + "-wal"), 8U * 1024 * 1024);
+}
+
 TEST_F(JobImportTest, shouldKeepTwoImportsApart) {
     Spool spool = open();
     auto one = spool.begin_import(spec()).value();
