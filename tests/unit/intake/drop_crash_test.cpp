@@ -19,8 +19,8 @@ protected:
         DropTest::SetUp();
         settings.settle.by = SettleBy::renaming;
     }
-    /// Runs into `crashes` crashes, one at the `at`-th step that is reached, and then to the end. False if so many
-    /// steps are not reached.
+    /// Crashes at the `at`-th step that is reached, from 0, starts anew and runs to the end. False if so many steps are
+    /// not reached.
     bool crash_and_recover(int at) {
         int reached = 0;
         bool crashed = false;
