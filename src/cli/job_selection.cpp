@@ -142,7 +142,7 @@ Result<JobSelection> select_job(const PrintOptions& options, spool::Spool& spool
     if (!source) {
         return source.error();
     }
-    const spool::JobSpec spec{*source, layout_of(options), RecordNumber{options.base}};
+    const spool::JobSpec spec{*source, intake::canonical_json(options.layout), RecordNumber{options.layout.base}};
     const auto known = spool.find_by_source(spec);
     if (!known) {
         return known.error();

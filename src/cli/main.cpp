@@ -1,22 +1,26 @@
 // The command line of linefeed. CLI11 stays in this file.
 #include "cli/check_config_command.hpp"
+#include "cli/drop_command.hpp"
 #include "cli/ledger_command.hpp"
 #include "cli/print_command.hpp"
 #include "cli/record_ranges.hpp"
 
 #include <CLI/CLI.hpp>
 
+#include <chrono>
 #include <cstdlib>
 #include <iostream>
 
 namespace {
 
 using linefeed::cli::CheckConfigOptions;
+using linefeed::cli::DropOptions;
 using linefeed::cli::ExitCode;
 using linefeed::cli::InDoubtPolicy;
 using linefeed::cli::JobsOptions;
 using linefeed::cli::LedgerOptions;
 using linefeed::cli::PrintOptions;
+using linefeed::intake::Layout;
 
 std::filesystem::path default_spool() {
     if (const char* state = std::getenv("XDG_STATE_HOME"); state != nullptr && *state != '\0') {
@@ -37,14 +41,69 @@ std::string profile_names() {
 }
 
 /// Texts of options that need more than CLI11's conversion.
-struct RawPrintOptions {
+struct RawLayout {
     std::string delimiter;
     std::string profile{linefeed::protocol::profiles.front().name};
-    std::string output{"text"};
-    std::string in_doubt{"ask"};
     bool no_header = false;
     std::optional<int> orientation;
 };
+
+struct RawPrintOptions {
+    RawLayout layout;
+    std::string output{"text"};
+    std::string in_doubt{"ask"};
+};
+
+/// The options that decide which records a file gives: the same for every command that reads files.
+void add_layout(CLI::App& command, Layout& layout, RawLayout& raw) {
+    command
+        .add_option("--columns", layout.columns,
+                    "Columns to print, by name or number from 1, separated by commas; default: all")
+        ->allow_extra_args(false)
+        ->delimiter(',');
+    command.add_option("--table", layout.table, "Table or view of the SQLite database");
+    command.add_option("--query", layout.query, "SELECT statement that gives the records of the SQLite database");
+    command.add_option("--delimiter", raw.delimiter,
+                       "Separator of the CSV file: one character, or tab; default: found out from the first line");
+    command.add_flag("--no-header", raw.no_header, "The first line of the CSV file is a record, not column names");
+    command.add_flag("--skip-bad", layout.skip_bad,
+                     "Leave rows out that cannot be printed, instead of refusing the file");
+    command
+        .add_option("--encoding", layout.encodings,
+                    "What the printer's font wants: latin1 (default), windows-1252 or unicode-hex; COLUMN=ENCODING for "
+                    "one column")
+        ->allow_extra_args(false)
+        ->delimiter(',');
+    command.add_option("--profile", raw.profile, "Firmware profile: " + profile_names())->capture_default_str();
+    command.add_option("--base", layout.base, "Record k has number BASE + k")->capture_default_str();
+    command.add_flag("--mirrored", layout.properties.mirrored, "Print every record mirrored");
+    command.add_option("--orientation", raw.orientation, "Turn every record by 0, 90, 180 or 270 degrees")
+        ->check(CLI::IsMember({0, 90, 180, 270}));
+}
+
+/// What is wrong with them, or nothing.
+std::string finish_layout(Layout& layout, const RawLayout& raw) {
+    layout.header = !raw.no_header;
+    if (raw.delimiter == "tab" || raw.delimiter == "\\t") {
+        layout.delimiter = '\t';
+    } else if (raw.delimiter.size() == 1) {
+        layout.delimiter = raw.delimiter.front();
+    } else if (!raw.delimiter.empty()) {
+        return "--delimiter: expected one character, or tab";
+    }
+    const auto profile = linefeed::protocol::profile_by_name(raw.profile);
+    if (!profile) {
+        return "--profile: \"" + raw.profile + "\" is not known; one of: " + profile_names();
+    }
+    layout.profile = *profile;
+    if (raw.orientation) {
+        layout.properties.orientation = static_cast<linefeed::protocol::Orientation>(*raw.orientation / 90);
+    }
+    if (layout.table && layout.query) {
+        return "--table and --query exclude each other";
+    }
+    return {};
+}
 
 void add_print(CLI::App& app, PrintOptions& options, RawPrintOptions& raw) {
     CLI::App& print =
@@ -54,29 +113,7 @@ void add_print(CLI::App& app, PrintOptions& options, RawPrintOptions& raw) {
                  "5 input rejected, 6 records in doubt (an operator must decide), 1 anything else.");
     print.add_option("FILE", options.file, "CSV file or SQLite database")->required();
     print.add_option("--printer", options.printer, "Address of the printer, tcp://HOST:PORT");
-    print
-        .add_option("--columns", options.columns,
-                    "Columns to print, by name or number from 1, separated by commas; default: all")
-        ->allow_extra_args(false)
-        ->delimiter(',');
-    print.add_option("--table", options.table, "Table or view of the SQLite database");
-    print.add_option("--query", options.query, "SELECT statement that gives the records of the SQLite database");
-    print.add_option("--delimiter", raw.delimiter,
-                     "Separator of the CSV file: one character, or tab; default: found out from the first line");
-    print.add_flag("--no-header", raw.no_header, "The first line of the CSV file is a record, not column names");
-    print.add_flag("--skip-bad", options.skip_bad,
-                   "Leave rows out that cannot be printed, instead of refusing the file");
-    print
-        .add_option("--encoding", options.encodings,
-                    "What the printer's font wants: latin1 (default), windows-1252 or unicode-hex; COLUMN=ENCODING for "
-                    "one column")
-        ->allow_extra_args(false)
-        ->delimiter(',');
-    print.add_option("--profile", raw.profile, "Firmware profile: " + profile_names())->capture_default_str();
-    print.add_option("--base", options.base, "Record k has number BASE + k")->capture_default_str();
-    print.add_flag("--mirrored", options.properties.mirrored, "Print every record mirrored");
-    print.add_option("--orientation", raw.orientation, "Turn every record by 0, 90, 180 or 270 degrees")
-        ->check(CLI::IsMember({0, 90, 180, 270}));
+    add_layout(print, options.layout, raw.layout);
     print.add_option("--from", options.from, "Number of the first record to print; default: the first of the file");
     print.add_option("--to", options.to, "Number of the last record to print; default: the last of the file");
     print.add_option("--spool", options.spool, "Database of jobs and the print ledger")->capture_default_str();
@@ -124,21 +161,8 @@ void add_print(CLI::App& app, PrintOptions& options, RawPrintOptions& raw) {
 /// What is wrong with the options, or nothing.
 std::string finish_options(PrintOptions& options, const RawPrintOptions& raw) {
     options.json = raw.output == "json";
-    options.header = !raw.no_header;
-    if (raw.delimiter == "tab" || raw.delimiter == "\\t") {
-        options.delimiter = '\t';
-    } else if (raw.delimiter.size() == 1) {
-        options.delimiter = raw.delimiter.front();
-    } else if (!raw.delimiter.empty()) {
-        return "--delimiter: expected one character, or tab";
-    }
-    const auto profile = linefeed::protocol::profile_by_name(raw.profile);
-    if (!profile) {
-        return "--profile: \"" + raw.profile + "\" is not known; one of: " + profile_names();
-    }
-    options.profile = *profile;
-    if (raw.orientation) {
-        options.properties.orientation = static_cast<linefeed::protocol::Orientation>(*raw.orientation / 90);
+    if (std::string problem = finish_layout(options.layout, raw.layout); !problem.empty()) {
+        return problem;
     }
     options.operator_word.policy = raw.in_doubt == "skip"      ? InDoubtPolicy::skip
                                    : raw.in_doubt == "reprint" ? InDoubtPolicy::reprint
@@ -150,9 +174,6 @@ std::string finish_options(PrintOptions& options, const RawPrintOptions& raw) {
     if (options.operator_word.policy != InDoubtPolicy::ask && (last_printed || options.operator_word.printed)) {
         return "--in-doubt " + raw.in_doubt + (last_printed ? " and --last-printed" : " and --printed") +
                " exclude each other";
-    }
-    if (options.table && options.query) {
-        return "--table and --query exclude each other";
     }
     if (options.printer.empty() && !options.dry_run) {
         return "--printer tcp://HOST:PORT is required";
@@ -169,6 +190,59 @@ void add_output(CLI::App& command, std::string& output) {
     command.add_option("-o,--output", output, "text or json")
         ->capture_default_str()
         ->check(CLI::IsMember({"text", "json"}));
+}
+
+struct RawDropOptions {
+    RawLayout layout;
+    std::string mode{"auto"};
+    std::string settle{"quiet=2s"};
+    std::optional<double> rescan_s;
+    std::string output{"text"};
+};
+
+CLI::App& add_drop(CLI::App& app, DropOptions& options, RawDropOptions& raw) {
+    CLI::App& drop = *app.add_subcommand("drop", "Import what is dropped into a folder into jobs, until Ctrl-C");
+    drop.footer("A file is claimed into processing/, imported, and ends in done/ or failed/, with a report beside it.\n"
+                "Nothing is printed. Exit codes: 0 ended, 4 an import was broken off (the next start takes it up),\n"
+                "5 with --once: a file was rejected, 2 usage, 1 anything else.");
+    drop.add_option("FOLDER", options.settings.folder, "The folder")->required();
+    drop.add_option("--pattern", options.settings.pattern, "Names of the files to take, as in the shell")
+        ->capture_default_str();
+    drop.add_option("--settle", raw.settle,
+                    "When a file is complete: quiet=TIME (unchanged for that time, in ms, s or min), rename (at once: "
+                    "files are renamed into the folder) or done (when NAME.done lies beside NAME)")
+        ->capture_default_str();
+    drop.add_option("--mode", raw.mode, "inotify, poll, or auto: poll on network file systems only")
+        ->capture_default_str()
+        ->check(CLI::IsMember({"auto", "inotify", "poll"}));
+    drop.add_option("--rescan", raw.rescan_s, "Seconds between two looks at the whole folder; inotify 30, poll 1")
+        ->check(CLI::Range(0.05, 86400.0));
+    drop.add_option("--max-bytes", options.settings.max_bytes, "Larger files are rejected unread")
+        ->capture_default_str();
+    drop.add_flag("--once", options.once, "Import what is there now, and end");
+    add_layout(drop, options.settings.layout, raw.layout);
+    drop.add_option("--spool", options.spool, "Database of jobs and the print ledger")->capture_default_str();
+    add_output(drop, raw.output);
+    return drop;
+}
+
+/// What is wrong with the options, or nothing.
+std::string finish_options(DropOptions& options, const RawDropOptions& raw) {
+    options.json = raw.output == "json";
+    if (raw.mode != "auto") {
+        options.settings.mode =
+            raw.mode == "poll" ? linefeed::intake::WatchMode::poll : linefeed::intake::WatchMode::inotify;
+    }
+    if (raw.rescan_s) {
+        options.settings.rescan =
+            std::chrono::duration_cast<linefeed::Duration>(std::chrono::duration<double>{*raw.rescan_s});
+    }
+    const auto settle = linefeed::intake::parse_settle_rule(raw.settle);
+    if (!settle) {
+        return "--settle " + raw.settle + ": expected rename, done or quiet=TIME, for example quiet=2s";
+    }
+    options.settings.settle = *settle;
+    return finish_layout(options.settings.layout, raw.layout);
 }
 
 CLI::App& add_jobs(CLI::App& app, JobsOptions& options, std::string& output) {
@@ -222,12 +296,15 @@ ExitCode run(int argc, char** argv) {
     JobsOptions jobs;
     LedgerOptions ledger;
     CheckConfigOptions check_config;
-    print.spool = jobs.spool = ledger.spool = default_spool();
+    DropOptions drop;
+    print.spool = jobs.spool = ledger.spool = drop.spool = default_spool();
     RawPrintOptions raw_print;
     RawLedgerOptions raw_ledger;
+    RawDropOptions raw_drop;
     std::string jobs_output{"text"};
     std::string check_config_output{"text"};
     add_print(app, print, raw_print);
+    const CLI::App& drop_command = add_drop(app, drop, raw_drop);
     const CLI::App& jobs_command = add_jobs(app, jobs, jobs_output);
     const CLI::App& ledger_command = add_ledger(app, ledger, raw_ledger);
     const CLI::App& check_config_command = add_check_config(app, check_config, check_config_output);
@@ -238,6 +315,10 @@ ExitCode run(int argc, char** argv) {
     } catch (const CLI::ParseError& error) {
         return usage_error(std::string{error.what()} +
                            " (linefeed --help, or linefeed COMMAND --help, shows the options)");
+    }
+    if (drop_command.parsed()) {
+        const std::string problem = finish_options(drop, raw_drop);
+        return problem.empty() ? linefeed::cli::run_drop(drop) : usage_error(problem);
     }
     if (jobs_command.parsed()) {
         jobs.json = jobs_output == "json";

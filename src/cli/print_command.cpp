@@ -13,7 +13,7 @@ namespace linefeed::cli {
 
 daemon::JobRunSettings PrintCommand::run_settings() const {
     daemon::JobRunSettings settings;
-    settings.session.escapes = options_.profile.escapes;
+    settings.session.escapes = options_.layout.profile.escapes;
     settings.session.reply_timeout = std::chrono::milliseconds{options_.reply_timeout_ms};
     settings.session.feeder.open_nozzle = options_.open_nozzle;
     for (const std::uint32_t code : options_.acknowledge) {

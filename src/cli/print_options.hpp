@@ -3,9 +3,7 @@
 
 #include "cli/operator_word.hpp"
 #include "daemon/real_time.hpp"
-#include "protocol/charset.hpp"
-#include "protocol/mail_record.hpp"
-#include "protocol/profile.hpp"
+#include "intake/layout.hpp"
 
 #include <cstdint>
 #include <filesystem>
@@ -20,19 +18,7 @@ struct PrintOptions {
     std::string printer; ///< tcp://HOST:PORT; may be empty with dry_run
     std::filesystem::path spool;
 
-    // The source
-    std::vector<std::string> columns;
-    std::optional<std::string> table;
-    std::optional<std::string> query;
-    std::optional<char> delimiter;
-    bool header = true;
-    bool skip_bad = false;
-
-    // The record
-    std::vector<std::string> encodings; ///< "latin1", or "COLUMN=unicode-hex"
-    protocol::Profile profile = protocol::profiles.front();
-    std::uint32_t base = 0;
-    protocol::RecordProperties properties;
+    intake::Layout layout;
 
     // The run
     std::optional<std::uint32_t> from;

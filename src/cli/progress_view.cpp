@@ -1,8 +1,11 @@
 #include "cli/progress_view.hpp"
 
+#include "protocol/charset.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <string_view>
 #include <unistd.h>
 
 namespace linefeed::cli {
@@ -27,6 +30,13 @@ std::string line_of(const ProgressView::State& state) {
         line += "  " + format_duration(*state.seconds_left) + " left";
     }
     return line;
+}
+
+/// Control characters, also those of one byte beyond ASCII, line separators, and what turns the direction of writing.
+bool commands_terminal(char32_t character) {
+    return character < 0x20 || (character >= 0x7F && character < 0xA0) || character == 0x061C ||
+           (character >= 0x200E && character <= 0x200F) || (character >= 0x2028 && character <= 0x202E) ||
+           (character >= 0x2066 && character <= 0x2069);
 }
 
 } // namespace
@@ -89,14 +99,18 @@ std::string format_duration(double seconds) {
 
 std::string printable(const std::string& text) {
     std::string result;
-    for (const char c : text) {
-        const auto byte = static_cast<unsigned char>(c);
-        if (byte < 0x20 || byte == 0x7f) {
+    for (std::string_view rest{text}; !rest.empty();) {
+        const auto character = protocol::decode_utf8(rest);
+        const std::string_view bytes = rest.substr(0, character ? character->bytes : 1);
+        rest.remove_prefix(bytes.size());
+        if (character && !commands_terminal(character->code_point)) {
+            result += bytes;
+            continue;
+        }
+        for (const char byte : bytes) {
             char escaped[8];
-            std::snprintf(escaped, sizeof escaped, "\\x%02X", byte);
+            std::snprintf(escaped, sizeof escaped, "\\x%02X", static_cast<unsigned char>(byte));
             result += escaped;
-        } else {
-            result += c;
         }
     }
     return result;

@@ -39,7 +39,8 @@ private:
 /// "1:02:03", "2:03", "7 s".
 [[nodiscard]] std::string format_duration(double seconds);
 
-/// Text from files and printers, safe to show on a terminal: control characters are written as \xNN.
+/// Text from files and printers, safe to show on a terminal: control characters, characters that turn the direction of
+/// writing, and bytes that are no UTF-8 are written as \xNN.
 [[nodiscard]] std::string printable(const std::string& text);
 
 } // namespace linefeed::cli

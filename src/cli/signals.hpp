@@ -14,6 +14,8 @@ public:
 
     /// How many of the signals have come since the last call.
     [[nodiscard]] int take();
+    /// Readable when take() would give some.
+    [[nodiscard]] int descriptor() const { return descriptor_; }
 
 private:
     int descriptor_ = -1;

@@ -17,9 +17,6 @@ namespace linefeed::cli {
 /// Progress of an import: rows so far and the fraction of the file; false cancels.
 using ImportProgress = std::function<bool(std::uint64_t rows, double fraction)>;
 
-/// Every option that changes the records, in a fixed form.
-[[nodiscard]] std::string layout_of(const PrintOptions& options);
-
 /// Imports the file to its end.
 [[nodiscard]] Result<intake::ImportOutcome> import_whole(const PrintOptions& options, spool::Spool& spool,
                                                          const spool::JobSpec& spec, const ImportProgress& on_progress);

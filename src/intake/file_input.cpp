@@ -23,6 +23,8 @@ std::string words(int error) {
         return "there is no such file";
     case EACCES:
         return "no permission to read it";
+    case ELOOP:
+        return "this is a symbolic link that is not followed";
     case EIO:
         return "the disk cannot read it";
     default:
@@ -34,7 +36,16 @@ std::string words(int error) {
 
 Result<FileInput> FileInput::open(const std::filesystem::path& file) {
     // O_NONBLOCK: opening a pipe must not wait for its other end. It means nothing for regular files.
-    FileInput input{file, ::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};
+    return checked({file, ::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)});
+}
+
+Result<FileInput> FileInput::open_in(int directory, const std::string& name, const std::filesystem::path& shown) {
+    return checked({shown, ::openat(directory, name.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOFOLLOW)});
+}
+
+/// Takes the error of opening from errno.
+Result<FileInput> FileInput::checked(FileInput input) {
+    const std::filesystem::path& file = input.file_;
     if (input.descriptor_ < 0) {
         return refused(file, words(errno));
     }
@@ -71,6 +82,18 @@ Result<std::size_t> FileInput::read(std::span<char> out) {
             return Failure{FailureKind::input, words(errno)};
         }
     }
+}
+
+Result<void> FileInput::rewind() {
+    return ::lseek(descriptor_, 0, SEEK_SET) == 0 ? Result<void>{} : Failure{FailureKind::input, words(errno)};
+}
+
+Result<struct stat> FileInput::status() const {
+    struct stat status {};
+    if (::fstat(descriptor_, &status) != 0) {
+        return Failure{FailureKind::input, words(errno)};
+    }
+    return status;
 }
 
 bool FileInput::is_sqlite() const {

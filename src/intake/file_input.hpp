@@ -6,9 +6,16 @@
 #include <cstdint>
 #include <filesystem>
 #include <span>
+#include <string>
+#include <sys/stat.h>
 #include <utility>
 
 namespace linefeed::intake {
+
+/// When a file was changed last, ns since the Unix epoch.
+[[nodiscard]] inline std::int64_t modified_ns(const struct stat& status) {
+    return std::int64_t{status.st_mtim.tv_sec} * 1'000'000'000 + status.st_mtim.tv_nsec;
+}
 
 /// An open regular file; reads from front to back.
 class FileInput {
@@ -24,8 +31,15 @@ public:
     FileInput& operator=(const FileInput&) = delete;
     ~FileInput();
 
+    /// The file `name` in an open directory, never through a symbolic link; `shown` is its path for messages.
+    [[nodiscard]] static Result<FileInput> open_in(int directory, const std::string& name,
+                                                   const std::filesystem::path& shown);
     /// Reads on; returns how much, 0 at the end of the file. The failure's message does not name the file.
     [[nodiscard]] Result<std::size_t> read(std::span<char> out);
+    /// Back to the front. The failure's message does not name the file.
+    [[nodiscard]] Result<void> rewind();
+    /// What the file is like now. The failure's message does not name the file.
+    [[nodiscard]] Result<struct stat> status() const;
     /// Whether the file begins like an SQLite database. Does not move the place of read().
     [[nodiscard]] bool is_sqlite() const;
     /// When it was opened.
@@ -33,6 +47,7 @@ public:
     [[nodiscard]] const std::filesystem::path& path() const { return file_; }
 
 private:
+    [[nodiscard]] static Result<FileInput> checked(FileInput input);
     FileInput(std::filesystem::path file, int descriptor)
         : file_(std::move(file))
         , descriptor_(descriptor) {}

@@ -17,6 +17,7 @@ public:
     Import(RowSource& source, spool::Spool& spool, const spool::JobSpec& spec, const ImportOptions& options)
         : spool_(spool)
         , spec_(spec)
+        , check_source_(options.check_source ? options.check_source : [&spec] { return check_unchanged(spec.source); })
         , pages_(source, spec.base, options) {}
 
     [[nodiscard]] Result<ImportOutcome> run();
@@ -26,6 +27,7 @@ private:
 
     spool::Spool& spool_;
     const spool::JobSpec& spec_;
+    std::function<Result<void>()> check_source_;
     PageMaker pages_;
     std::optional<spool::JobImport> job_;
 };
@@ -55,7 +57,7 @@ Result<ImportOutcome> Import::finish() {
     if (report.rows == 0) {
         return Failure{FailureKind::input, "the source has no rows"};
     }
-    if (auto unchanged = check_unchanged(spec_.source); !unchanged) {
+    if (auto unchanged = check_source_(); !unchanged) {
         return unchanged.error();
     }
     if (!job_) {

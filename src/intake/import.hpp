@@ -47,6 +47,8 @@ struct ImportOptions {
     bool skip_bad = false;
     /// Asked behind each record: true closes the page although it is not full.
     std::function<bool()> close_page{};
+    /// import_source() asks it before it makes the job: a failure refuses the source. Default: check_unchanged().
+    std::function<Result<void>()> check_source{};
     /// Called now and then; returning false cancels the import, which then fails with FailureKind::stopped.
     std::function<bool(const ImportReport&, double progress)> on_progress;
 };

@@ -2,7 +2,6 @@
 #include "intake/row_source.hpp"
 
 #include "intake/csv_source.hpp"
-#include "intake/file_input.hpp"
 #include "intake/sqlite_source.hpp"
 
 #include <cerrno>
@@ -11,20 +10,16 @@
 
 namespace linefeed::intake {
 
-namespace {
-
-std::int64_t modified_ns(const struct stat& status) {
-    return std::int64_t{status.st_mtim.tv_sec} * 1'000'000'000 + status.st_mtim.tv_nsec;
-}
-
-} // namespace
-
 Result<std::unique_ptr<RowSource>> open_source(const std::filesystem::path& file, const SourceOptions& options) {
     auto input = FileInput::open(file);
     if (!input) {
         return input.error();
     }
-    return input->is_sqlite() ? SqliteSource::open(file, options) : CsvSource::open(std::move(*input), options);
+    return open_source(std::move(*input), options);
+}
+
+Result<std::unique_ptr<RowSource>> open_source(FileInput file, const SourceOptions& options) {
+    return file.is_sqlite() ? SqliteSource::open(file.path(), options) : CsvSource::open(std::move(file), options);
 }
 
 Result<spool::SourceFingerprint> fingerprint(const std::filesystem::path& file) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/failure.hpp"
+#include "intake/file_input.hpp"
 #include "spool/job.hpp"
 
 #include <cstdint>
@@ -38,6 +39,8 @@ struct SourceOptions {
     std::optional<std::string> table;
     /// … or the query. Exactly one of them; a database with a single table needs neither.
     std::optional<std::string> query;
+    /// SQLite: false refuses a database whose path holds a symbolic link.
+    bool follow_links = true;
 };
 
 /// Flow: open_source(), then next() until it returns false or fails.
@@ -59,6 +62,9 @@ public:
 /// options that do not fit): missing, a directory, empty, no such table or column, locked, corrupt.
 [[nodiscard]] Result<std::unique_ptr<RowSource>> open_source(const std::filesystem::path& file,
                                                              const SourceOptions& options);
+
+/// The same for a file that is open already.
+[[nodiscard]] Result<std::unique_ptr<RowSource>> open_source(FileInput file, const SourceOptions& options);
 
 /// The fingerprint of a file, and of its -wal if there is one.
 [[nodiscard]] Result<spool::SourceFingerprint> fingerprint(const std::filesystem::path& file);

@@ -55,7 +55,7 @@ Result<std::unique_ptr<RowSource>> SqliteSource::open(const std::filesystem::pat
         return Failure{FailureKind::usage, "a table and a query cannot be read at once: choose one of them"};
     }
     std::unique_ptr<SqliteSource> source{new SqliteSource{name}};
-    if (auto connected = source->connect(); !connected) {
+    if (auto connected = source->connect(options.follow_links); !connected) {
         return connected.error();
     }
     const auto started =
@@ -66,10 +66,11 @@ Result<std::unique_ptr<RowSource>> SqliteSource::open(const std::filesystem::pat
     return std::unique_ptr<RowSource>{std::move(source)};
 }
 
-Result<void> SqliteSource::connect() {
+Result<void> SqliteSource::connect(bool follow_links) {
     sqlite3* connection = nullptr;
     const std::string path = file_.starts_with('/') ? file_ : "./" + file_; // never a URI or ":memory:"
-    const int flags = SQLITE_OPEN_READONLY | SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_EXRESCODE;
+    const int flags =
+        SQLITE_OPEN_READONLY | SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_EXRESCODE | (follow_links ? 0 : SQLITE_OPEN_NOFOLLOW);
     const int code = sqlite3_open_v2(path.c_str(), &connection, flags, nullptr);
     connection_.reset(connection);
     if (code != SQLITE_OK) {

@@ -20,7 +20,7 @@ public:
 private:
     explicit SqliteSource(std::string file)
         : file_(std::move(file)) {}
-    [[nodiscard]] Result<void> connect();
+    [[nodiscard]] Result<void> connect(bool follow_links);
     [[nodiscard]] Result<void> start_table(const SourceOptions& options);
     [[nodiscard]] Result<void> start_query(const std::string& query, const std::vector<std::string>& columns);
     /// The text of result column `index`; empty with row.problem set if it has none. Fails if memory runs out.

@@ -32,6 +32,8 @@ struct JobSpec {
     std::string layout;
     /// Record k has number base + k.
     RecordNumber base;
+    /// SHA-256 of the bytes of the source, hex; empty = not known (only the drop folder reads a file twice).
+    std::string source_sha256{};
 };
 
 enum class ImportState {

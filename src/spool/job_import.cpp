@@ -279,7 +279,8 @@ Result<JobImport> Spool::begin_import(const JobSpec& spec, std::string import_re
     job.created_ns = state_->wall_clock_ns();
     auto statement = state_->database->prepare(
         "INSERT INTO jobs (source_path, source_size, source_modified_ns, source_inode, source_companion, layout, base, "
-        "created_ns, import_report, state) VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, 'importing')");
+        "created_ns, import_report, source_sha256, state) "
+        "VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, 'importing')");
     if (!statement) {
         return statement.error();
     }
@@ -291,7 +292,8 @@ Result<JobImport> Spool::begin_import(const JobSpec& spec, std::string import_re
         .bind(6, spec.layout)
         .bind(7, std::int64_t{spec.base.value()})
         .bind(8, job.created_ns)
-        .bind(9, job.import_report);
+        .bind(9, job.import_report)
+        .bind(10, spec.source_sha256);
     if (auto done = statement->run(); !done) {
         return state_->failed_write(done.error());
     }

@@ -26,6 +26,9 @@ private:
     std::string text_ = "{";
 };
 
+/// A text as JSON, in quotes; what is not UTF-8 is replaced.
+[[nodiscard]] std::string json_string(std::string_view text);
+
 /// [a,b,…] of values that are JSON already.
 [[nodiscard]] std::string json_array(const std::vector<std::string>& values);
 

@@ -98,6 +98,9 @@ public:
                                                            const std::string& layout);
     /// The ready jobs that were imported from this path, oldest first.
     [[nodiscard]] Result<std::vector<Job>> find_by_path(const std::string& path);
+    /// The ready jobs that were imported from a source of these bytes, whatever its name and however it was read,
+    /// oldest first. `sha256` as in JobSpec, not empty.
+    [[nodiscard]] Result<std::vector<Job>> find_by_source_bytes(const std::string& sha256);
     /// The same content was found under a new fingerprint (file touched or moved).
     [[nodiscard]] Result<void> update_source(JobId id, const SourceFingerprint& source);
     /// Removes a job that has no ledger rows, with its pages.

@@ -5,9 +5,10 @@ namespace linefeed::spool {
 
 namespace {
 
-constexpr std::string_view select_jobs = "SELECT id, source_path, source_size, source_modified_ns, source_inode, "
-                                         "source_companion, layout, base, state, records, "
-                                         "content_sha256, frame_bytes, created_ns, import_report FROM jobs ";
+constexpr std::string_view select_jobs =
+    "SELECT id, source_path, source_size, source_modified_ns, source_inode, "
+    "source_companion, layout, base, state, records, "
+    "content_sha256, frame_bytes, created_ns, import_report, source_sha256 FROM jobs ";
 
 Result<Job> job_from(const Statement& row, const std::string& path) {
     Job job;
@@ -32,6 +33,7 @@ Result<Job> job_from(const Statement& row, const std::string& path) {
     job.frame_bytes = static_cast<std::uint64_t>(row.number(11));
     job.created_ns = row.number(12);
     job.import_report = row.text(13);
+    job.spec.source_sha256 = row.text(14);
     return job;
 }
 
@@ -118,6 +120,18 @@ Result<std::vector<Job>> Spool::find_by_content(const std::string& content_sha25
         return statement.error();
     }
     return read_jobs(statement->bind(1, content_sha256).bind(2, layout), state_->database->path());
+}
+
+Result<std::vector<Job>> Spool::find_by_source_bytes(const std::string& sha256) {
+    static const std::string sql =
+        std::string{select_jobs} +
+        "WHERE source_sha256 = ?1 AND source_sha256 <> '' AND state = 'ready' ORDER BY id"; // the index is a partial
+                                                                                            // one
+    auto statement = state_->database->prepare(sql.c_str());
+    if (!statement) {
+        return statement.error();
+    }
+    return read_jobs(statement->bind(1, sha256), state_->database->path());
 }
 
 Result<std::vector<Job>> Spool::find_by_path(const std::string& path) {

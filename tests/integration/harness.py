@@ -219,10 +219,11 @@ class Client:
 
 
 class Job:
-    """linefeed print as a process that is still running."""
+    """linefeed as a process that is still running. `messages`: a file for what it says on stderr, if that may be more than a pipe holds
+    before anybody reads it."""
 
-    def __init__(self, command):
-        self.process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    def __init__(self, command, messages=subprocess.PIPE):
+        self.process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=messages, text=True)
 
     def signal(self, number):
         self.process.send_signal(number)

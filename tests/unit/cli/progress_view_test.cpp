@@ -34,6 +34,12 @@ TEST(Printable, shouldDisarmControlCharacters) {
     EXPECT_EQ(printable(std::string{"\0\x7f", 2}), "\\x00\\x7F");
 }
 
+TEST(Printable, shouldDisarmWhatIsNotText) {
+    EXPECT_EQ(printable("a\xFF\xC3"), "a\\xFF\\xC3");
+    EXPECT_EQ(printable("\u009B2J"), "\\xC2\\x9B2J") << "a control sequence in one character";
+    EXPECT_EQ(printable("vsc.\u202Efdp"), "vsc.\\xE2\\x80\\xAEfdp") << "written from right to left";
+}
+
 TEST(ProgressView, shouldSayMessagesOnLinesOfTheirOwn) {
     ProgressView view{false};
     testing::internal::CaptureStderr();

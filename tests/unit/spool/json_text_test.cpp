@@ -26,6 +26,10 @@ TEST(JsonObject, shouldReplaceWhatIsNotUtf8) {
     EXPECT_EQ(JsonObject{}.add("t", "a\xFFz").text(), "{\"t\":\"a\uFFFDz\"}");
 }
 
+TEST(JsonString, shouldBeQuotedAndEscaped) {
+    EXPECT_EQ(json_string("a\"\n\xFF"), "\"a\\\"\\n\uFFFD\"");
+}
+
 TEST(JsonArray, shouldSeparateItsValues) {
     EXPECT_EQ(json_array({}), "[]");
     EXPECT_EQ(json_array({"1"}), "[1]");

@@ -64,5 +64,22 @@ TEST_F(SchemaTest, shouldApplyEachMigrationOnceAndNoneIfItIsUpToDate) {
     EXPECT_FALSE((*database)->in_transaction());
 }
 
+TEST_F(SchemaTest, shouldTakeOverTheJobsOfTheFirstSchema) {
+    {
+        auto database = Database::open(path.string(), {});
+        ASSERT_TRUE((*database)->execute(migrations().front().sql).has_value());
+        ASSERT_TRUE((*database)->execute("PRAGMA user_version = 1").has_value());
+    }
+    ASSERT_EQ(
+        sql("INSERT INTO jobs (source_path, source_size, source_modified_ns, source_inode, source_companion, layout, "
+            "base, state, created_ns) VALUES ('/data/names.csv', 1000, 77, 5, '', '{}', 0, 'ready', 1)"),
+        "");
+    Spool spool = open();
+    const auto jobs = spool.jobs();
+    ASSERT_EQ(jobs->size(), 1U);
+    EXPECT_EQ(jobs->front().spec.source.path, "/data/names.csv");
+    EXPECT_EQ(jobs->front().spec.source_sha256, "");
+}
+
 } // namespace
 } // namespace linefeed::spool

@@ -136,6 +136,22 @@ TEST_F(SpoolJobsTest, shouldFindAJobByItsExactSource) {
     EXPECT_NE(job.id, newer.id);
 }
 
+TEST_F(SpoolJobsTest, shouldFindReadyJobsByTheBytesOfTheirSource) {
+    JobSpec wanted = spec();
+    import(wanted);
+    wanted.source_sha256 = std::string(64, 'a');
+    const Job first = import(wanted);
+    wanted.source.path = "/data/copy.csv";
+    wanted.layout = "{}";
+    import(wanted);
+    const auto unfinished = spool.begin_import(wanted);
+    EXPECT_EQ(first.spec.source_sha256, wanted.source_sha256);
+    EXPECT_EQ(spool.job(first.id).value()->spec.source_sha256, wanted.source_sha256);
+    EXPECT_THAT(ids(spool.find_by_source_bytes(wanted.source_sha256)), ElementsAre(2, 3));
+    EXPECT_THAT(ids(spool.find_by_source_bytes(std::string(64, 'b'))), ElementsAre());
+    EXPECT_THAT(ids(spool.find_by_source_bytes("")), ElementsAre()) << "unknown bytes are not the same bytes";
+}
+
 TEST_F(SpoolJobsTest, shouldFindJobsByContentOldestFirst) {
     const Job first = import(spec());
     JobSpec elsewhere = spec();

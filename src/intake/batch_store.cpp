@@ -1,0 +1,69 @@
+#include "intake/batch_store.hpp"
+
+namespace linefeed::intake {
+
+Result<std::optional<KnownBatch>> SpoolBatches::find(const spool::JobSpec& spec) {
+    const auto jobs = spool_.find_by_source_bytes(spec.source_sha256);
+    if (!jobs) {
+        return jobs.error();
+    }
+    for (const spool::Job& job : *jobs) {
+        if (job.spec.source != spec.source) {
+            continue;
+        }
+        // Perhaps the last that import() did before a crash, so that it could not compare the records any more.
+        auto earlier = give_way(job);
+        if (!earlier) {
+            return earlier.error();
+        }
+        return std::optional{*earlier ? KnownBatch{std::move(**earlier), false} : KnownBatch{job, true}};
+    }
+    for (const spool::Job& job : *jobs) {
+        if (job.spec.layout == spec.layout && job.spec.base == spec.base) {
+            return std::optional{KnownBatch{job, false}};
+        }
+    }
+    return std::optional<KnownBatch>{};
+}
+
+Result<BatchImport> SpoolBatches::import(RowSource& source, const spool::JobSpec& spec, const ImportOptions& options) {
+    auto outcome = import_source(source, spool_, spec, options);
+    if (!outcome) {
+        return outcome.error();
+    }
+    BatchImport batch{std::move(outcome->report), std::move(outcome->job), {}};
+    if (batch.job) {
+        auto earlier = give_way(*batch.job);
+        if (!earlier) {
+            return earlier.error();
+        }
+        if (*earlier) {
+            batch.earlier = std::move(*earlier);
+            batch.job.reset();
+        }
+    }
+    return batch;
+}
+
+Result<std::optional<spool::Job>> SpoolBatches::give_way(const spool::Job& job) {
+    auto same = spool_.find_by_content(job.content_sha256, job.spec.layout);
+    if (!same) {
+        return same.error();
+    }
+    if (same->empty() || same->front().id >= job.id) {
+        return std::optional<spool::Job>{};
+    }
+    const auto state = spool_.ledger_state(job.id);
+    if (!state) {
+        return state.error();
+    }
+    if (!state->segments().empty()) {
+        return std::optional<spool::Job>{}; // somebody wants it printed again
+    }
+    if (auto removed = spool_.remove_job(job.id); !removed) {
+        return removed.error();
+    }
+    return std::optional{std::move(same->front())};
+}
+
+} // namespace linefeed::intake

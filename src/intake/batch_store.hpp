@@ -1,0 +1,54 @@
+// Where a drop folder puts its batches. The command line writes the spool itself; the service has one thread that does,
+// and hands this interface's calls over to it, page by page.
+#pragma once
+
+#include "base/failure.hpp"
+#include "intake/import.hpp"
+#include "spool/spool.hpp"
+
+#include <optional>
+
+namespace linefeed::intake {
+
+/// A job that has the records of a file already.
+struct KnownBatch {
+    spool::Job job;
+    /// It was imported from this very file, not from another of the same content.
+    bool this_file = false;
+};
+
+struct BatchImport {
+    ImportReport report;
+    std::optional<spool::Job> job; ///< absent: refused because of bad rows, or `earlier`
+    /// The job that has the same records, though it was made of other bytes; nothing new is stored then.
+    std::optional<spool::Job> earlier;
+};
+
+/// Calls may take as long as they need; FailureKind::storage means that nothing more can be stored for now.
+class BatchStore {
+public:
+    virtual ~BatchStore() = default;
+    /// The job for a file of these bytes (spec.source_sha256), read in the same way or made of this very file.
+    [[nodiscard]] virtual Result<std::optional<KnownBatch>> find(const spool::JobSpec& spec) = 0;
+    /// As import_source(). The job becomes ready in one transaction, and not unless options.check_source allows it.
+    [[nodiscard]] virtual Result<BatchImport> import(RowSource& source, const spool::JobSpec& spec,
+                                                     const ImportOptions& options) = 0;
+};
+
+/// For whoever owns the spool. The spool must outlive it.
+class SpoolBatches final : public BatchStore {
+public:
+    explicit SpoolBatches(spool::Spool& spool)
+        : spool_(spool) {}
+    [[nodiscard]] Result<std::optional<KnownBatch>> find(const spool::JobSpec& spec) override;
+    [[nodiscard]] Result<BatchImport> import(RowSource& source, const spool::JobSpec& spec,
+                                             const ImportOptions& options) override;
+
+private:
+    /// The earlier job with the records of `job`, which is removed then.
+    [[nodiscard]] Result<std::optional<spool::Job>> give_way(const spool::Job& job);
+
+    spool::Spool& spool_;
+};
+
+} // namespace linefeed::intake

@@ -1,0 +1,103 @@
+#include "intake/layout.hpp"
+
+#include "spool/json_text.hpp"
+
+#include <algorithm>
+
+namespace linefeed::intake {
+
+namespace {
+
+/// One charset for each column, from "latin1" (all) and "COLUMN=unicode-hex" (one).
+Result<std::vector<protocol::Charset>> charsets_for(const std::vector<std::string>& encodings,
+                                                    const std::vector<std::string>& columns) {
+    std::vector<protocol::Charset> charsets(columns.size(), protocol::Charset::latin1);
+    for (const std::string& encoding : encodings) {
+        const std::size_t equals = encoding.rfind('=');
+        const auto charset =
+            protocol::charset_from_name(equals == std::string::npos ? encoding : encoding.substr(equals + 1));
+        if (!charset) {
+            return Failure{FailureKind::usage,
+                           "--encoding " + encoding +
+                               ": expected latin1, windows-1252 or unicode-hex, or COLUMN=one of them"};
+        }
+        if (equals == std::string::npos) {
+            std::fill(charsets.begin(), charsets.end(), *charset);
+            continue;
+        }
+        const auto column = std::find(columns.begin(), columns.end(), encoding.substr(0, equals));
+        if (column == columns.end()) {
+            return Failure{FailureKind::usage,
+                           "--encoding " + encoding + ": no column \"" + encoding.substr(0, equals) + "\" is printed"};
+        }
+        charsets[static_cast<std::size_t>(column - columns.begin())] = *charset;
+    }
+    return charsets;
+}
+
+std::string texts_json(const std::vector<std::string>& texts) {
+    std::vector<std::string> quoted;
+    quoted.reserve(texts.size());
+    for (const std::string& text : texts) {
+        quoted.push_back(spool::json_string(text));
+    }
+    return spool::json_array(quoted);
+}
+
+SourceOptions source_options(const Layout& layout) {
+    return {layout.columns, layout.delimiter, layout.header, layout.table, layout.query};
+}
+
+Result<OpenedSource> with_options(Result<std::unique_ptr<RowSource>> source, const Layout& layout) {
+    if (!source) {
+        return source.error();
+    }
+    const auto charsets = charsets_for(layout.encodings, (*source)->column_names());
+    if (!charsets) {
+        return charsets.error();
+    }
+    OpenedSource opened{std::move(*source), {}};
+    opened.options.charsets = *charsets;
+    opened.options.escapes = layout.profile.escapes;
+    opened.options.properties = layout.properties;
+    opened.options.skip_bad = layout.skip_bad;
+    return opened;
+}
+
+} // namespace
+
+std::string canonical_json(const Layout& layout) {
+    const auto boolean = [](bool value) { return value ? "true" : "false"; };
+    spool::JsonObject json;
+    json.add_json("columns", texts_json(layout.columns));
+    json.add_json("encodings", texts_json(layout.encodings));
+    json.add("profile", layout.profile.name);
+    if (layout.table) {
+        json.add("table", *layout.table);
+    }
+    if (layout.query) {
+        json.add("query", *layout.query);
+    }
+    if (layout.delimiter) {
+        json.add("delimiter", std::string_view{&*layout.delimiter, 1});
+    }
+    json.add_json("header", boolean(layout.header));
+    json.add_json("skip_bad", boolean(layout.skip_bad));
+    json.add_json("mirrored", boolean(layout.properties.mirrored));
+    if (layout.properties.orientation) {
+        json.add("orientation", static_cast<int>(*layout.properties.orientation));
+    }
+    return json.text();
+}
+
+Result<OpenedSource> open_with_layout(const std::filesystem::path& file, const Layout& layout) {
+    return with_options(open_source(file, source_options(layout)), layout);
+}
+
+Result<OpenedSource> open_with_layout(FileInput file, const Layout& layout) {
+    SourceOptions options = source_options(layout);
+    options.follow_links = false;
+    return with_options(open_source(std::move(file), options), layout);
+}
+
+} // namespace linefeed::intake

@@ -1,0 +1,86 @@
+#include "intake/batch_store.hpp"
+#include "intake_fixture.hpp"
+
+namespace linefeed::intake {
+namespace {
+
+class BatchStoreTest : public IntakeTest {
+protected:
+    void SetUp() override {
+        IntakeTest::SetUp();
+        spool.emplace(spool::Spool::open(directory / "spool.db", {}).value());
+        batches.emplace(*spool);
+    }
+    static spool::JobSpec spec(const std::string& name, char hash, const std::string& layout = "{}") {
+        return {{"/in/done/" + name, 10, 20, 30, ""}, layout, {}, std::string(64, hash)};
+    }
+    BatchImport import(const std::string& content, const spool::JobSpec& spec) {
+        auto rows = open_source(write(content), {}).value();
+        return batches->import(*rows, spec, {}).value();
+    }
+
+    std::optional<spool::Spool> spool;
+    std::optional<SpoolBatches> batches;
+};
+
+TEST_F(BatchStoreTest, shouldFindAJobByTheBytesOfItsFile) {
+    EXPECT_FALSE(batches->find(spec("a", 'a')).value());
+    const spool::Job job = *import("n\n1\n", spec("a", 'a')).job;
+    const auto own = batches->find(spec("a", 'a')).value();
+    EXPECT_EQ(own->job.id, job.id);
+    EXPECT_TRUE(own->this_file);
+    const auto other = batches->find(spec("b", 'a')).value();
+    EXPECT_EQ(other->job.id, job.id);
+    EXPECT_FALSE(other->this_file);
+    EXPECT_FALSE(batches->find(spec("a", 'b')).value());
+}
+
+TEST_F(BatchStoreTest, shouldTakeTheSameBytesReadInAnotherWayForAnotherBatch) {
+    const spool::Job job = *import("n\n1\n", spec("a", 'a')).job;
+    EXPECT_FALSE(batches->find(spec("b", 'a', R"({"columns":["n"]})")).value());
+    spool::JobSpec base = spec("b", 'a');
+    base.base = RecordNumber{7};
+    EXPECT_FALSE(batches->find(base).value());
+    // But the very file is the one of the job, however it would be read now.
+    EXPECT_EQ(batches->find(spec("a", 'a', R"({"columns":["n"]})")).value()->job.id, job.id);
+}
+
+TEST_F(BatchStoreTest, shouldNotStoreTheSameRecordsFromOtherBytes) {
+    const spool::Job job = *import("n\n1\n", spec("a", 'a')).job;
+    const BatchImport again = import("n\r\n1\r\n", spec("b", 'b'));
+    EXPECT_FALSE(again.job);
+    ASSERT_TRUE(again.earlier);
+    EXPECT_EQ(again.earlier->id, job.id);
+    EXPECT_EQ(spool->jobs().value().size(), 1U);
+    EXPECT_TRUE(import("n\n1\n2\n", spec("c", 'c')).job);
+}
+
+/// As after a crash between the import and the comparison.
+TEST_F(BatchStoreTest, shouldCompareTheRecordsOfAJobThatItFinds) {
+    const spool::Job job = *import("n\n1\n", spec("a", 'a')).job;
+    auto rows = open_source(write("n\r\n1\r\n"), {}).value();
+    const spool::Job second = *import_source(*rows, *spool, spec("b", 'b'), {}).value().job;
+    const auto found = batches->find(spec("b", 'b')).value();
+    EXPECT_EQ(found->job.id, job.id);
+    EXPECT_FALSE(found->this_file);
+    EXPECT_FALSE(spool->job(second.id).value());
+}
+
+TEST_F(BatchStoreTest, shouldKeepAJobOfWhichSomethingIsPrinted) {
+    import("n\n1\n", spec("a", 'a'));
+    auto rows = open_source(write("n\r\n1\r\n"), {}).value();
+    const spool::Job second = *import_source(*rows, *spool, spec("b", 'b'), {}).value().job;
+    const spool::RunId run = spool->begin_run(second.id, second.records, "{}").value();
+    const std::vector<spool::LedgerEntry> intent{{spool::LedgerKind::intent, run, second.records, "{}"}};
+    ASSERT_TRUE(spool->append(second.id, intent).has_value());
+    EXPECT_EQ(batches->find(spec("b", 'b')).value()->job.id, second.id);
+}
+
+TEST_F(BatchStoreTest, shouldReportBadRows) {
+    const BatchImport bad = import("n\n\x01\n", spec("a", 'a'));
+    EXPECT_FALSE(bad.job || bad.earlier);
+    EXPECT_EQ(bad.report.bad_rows, 1U);
+}
+
+} // namespace
+} // namespace linefeed::intake
