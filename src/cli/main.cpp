@@ -3,7 +3,7 @@
 #include "cli/drop_command.hpp"
 #include "cli/ledger_command.hpp"
 #include "cli/print_command.hpp"
-#include "cli/record_ranges.hpp"
+#include "daemon/record_ranges.hpp"
 
 #include <CLI/CLI.hpp>
 
@@ -16,7 +16,7 @@ namespace {
 using linefeed::cli::CheckConfigOptions;
 using linefeed::cli::DropOptions;
 using linefeed::cli::ExitCode;
-using linefeed::cli::InDoubtPolicy;
+using linefeed::daemon::InDoubtPolicy;
 using linefeed::cli::JobsOptions;
 using linefeed::cli::LedgerOptions;
 using linefeed::cli::PrintOptions;
@@ -327,7 +327,7 @@ ExitCode run(int argc, char** argv) {
     if (ledger_command.parsed()) {
         ledger.json = raw_ledger.output == "json";
         if (!raw_ledger.records.empty()) {
-            ledger.records = linefeed::cli::parse_record_range(raw_ledger.records);
+            ledger.records = linefeed::daemon::parse_record_range(raw_ledger.records);
             if (!ledger.records) {
                 return usage_error("--records " + raw_ledger.records + ": expected N or N-M");
             }

@@ -193,7 +193,7 @@ struct ImportAnswer {
     std::string report;     ///< JSON of intake::ImportReport: the rows that are bad
 };
 
-/// What an operator knows about records in doubt: exactly one is given. See cli/operator_word.hpp for what is refused.
+/// What an operator knows about records in doubt: exactly one is given. See daemon/operator_word.hpp for what is refused.
 struct SettleRequest {
     enum class Policy { skip, reprint };
     std::optional<Policy> policy;

@@ -15,7 +15,9 @@ MAY_USE = {
     "simulator": {"base", "protocol"},
     "config": {"base", "protocol", "feeder", "link"},
     "daemon": {"base", "protocol", "feeder", "session", "link", "spool", "intake", "config"},
+    "service": {"base", "protocol", "feeder", "session", "link", "spool", "intake", "config", "daemon"},
     "cli": {"base", "protocol", "feeder", "session", "link", "spool", "intake", "config", "daemon"},
+    "linefeedd": {"base", "spool", "config", "daemon", "service", "cli"},
 }
 
 # Folder -> folder -> the only headers of the second that the first may include: the feeder knows the message types, never bytes.
@@ -59,7 +61,7 @@ IMPURE_CODE = {
 LIBRARY_FOLDERS = {
     r"sqlite3(ext)?\.h": {"spool", "intake"},
     r"boost/(asio|beast)(/.*|\.hpp)?": {"base", "link", "simulator", "daemon"},
-    r"CLI/.*": {"cli", "simulator"},
+    r"CLI/.*": {"cli", "simulator", "linefeedd"},
     r"openssl/.*": {"spool"},
     r"yaml-cpp/.*": {"config"},
     r"nlohmann/.*": {"spool", "simulator", "config", "daemon", "cli"},

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace linefeed::cli {
+namespace linefeed::daemon {
 
 /// The records of a job that wait for an operator, with what the printer said about them.
 struct DoubtEvidence {
@@ -30,4 +30,4 @@ struct DoubtEvidence {
 /// Reads it from the ledger rows of the run that left the records in doubt.
 [[nodiscard]] Result<DoubtEvidence> doubt_evidence(spool::Spool& spool, const spool::Job& job);
 
-} // namespace linefeed::cli
+} // namespace linefeed::daemon

@@ -1,13 +1,13 @@
-#include "cli/doubt_evidence.hpp"
+#include "daemon/doubt_evidence.hpp"
 
-#include "cli/record_ranges.hpp"
+#include "daemon/record_ranges.hpp"
 #include "daemon/evidence_json.hpp"
 
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 
-namespace linefeed::cli {
+namespace linefeed::daemon {
 
 namespace {
 
@@ -16,7 +16,7 @@ using spool::LedgerKind;
 using spool::LedgerRow;
 using spool::RecordState;
 
-/// What the in_doubt row of the ledger remembers of the printer's words (daemon::settle_json).
+/// What the in_doubt row of the ledger remembers of the printer's words (settle_json).
 struct SettleWords {
     std::string serial_number;
     RecordNumber last_printed;
@@ -83,7 +83,7 @@ Result<DoubtRows> find_rows(spool::Spool& spool, spool::JobId job, const spool::
 
 /// The prints that the counter has seen since the run began; absent = it does not tell: not reported, of another
 /// printer, or it does not move.
-std::optional<std::uint32_t> prints_of(const daemon::RunStart& start, const SettleWords& words) {
+std::optional<std::uint32_t> prints_of(const RunStart& start, const SettleWords& words) {
     const bool same_printer =
         start.serial_number.empty() || words.serial_number.empty() || start.serial_number == words.serial_number;
     if (!same_printer || !start.total_before || !words.total_prints || *words.total_prints == *start.total_before) {
@@ -102,7 +102,7 @@ void judge(DoubtEvidence& evidence, const DoubtRows& rows) {
                         "thrown some of them away";
         return;
     }
-    const auto start = daemon::parse_run_start(rows.run_started->entry.evidence);
+    const auto start = parse_run_start(rows.run_started->entry.evidence);
     const auto prints = start ? prints_of(*start, words) : std::nullopt;
     if (!prints) {
         return;
@@ -149,4 +149,4 @@ Result<DoubtEvidence> doubt_evidence(spool::Spool& spool, const spool::Job& job)
     return evidence;
 }
 
-} // namespace linefeed::cli
+} // namespace linefeed::daemon

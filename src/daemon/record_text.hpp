@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace linefeed::cli {
+namespace linefeed::daemon {
 
 /// How the records of a job are encoded; kept with the job at its import.
 struct RecordFormat {
@@ -26,4 +26,4 @@ struct RecordFormat {
 /// The fields as one text, `separator` between them.
 [[nodiscard]] std::string joined(const std::vector<std::string>& fields, const std::string& separator);
 
-} // namespace linefeed::cli
+} // namespace linefeed::daemon

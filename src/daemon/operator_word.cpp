@@ -1,18 +1,16 @@
-#include "cli/operator_word.hpp"
+#include "daemon/operator_word.hpp"
 
 #include "base/assert.hpp"
-#include "cli/record_ranges.hpp"
-#include "cli/record_text.hpp"
+#include "daemon/record_ranges.hpp"
+#include "daemon/record_text.hpp"
 
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <charconv>
-#include <pwd.h>
-#include <unistd.h>
 #include <vector>
 
-namespace linefeed::cli {
+namespace linefeed::daemon {
 
 namespace {
 
@@ -20,13 +18,8 @@ using spool::LedgerEntry;
 using spool::LedgerKind;
 using spool::RecordState;
 
-std::string who() {
-    const passwd* user = ::getpwuid(::getuid());
-    return user != nullptr ? user->pw_name : "uid " + std::to_string(::getuid());
-}
-
-std::string evidence(const std::string& said) {
-    return nlohmann::ordered_json{{"operator", who()}, {"said", said}}.dump(
+std::string evidence(const std::string& who, const std::string& said) {
+    return nlohmann::ordered_json{{"operator", who}, {"said", said}}.dump(
         -1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
@@ -173,7 +166,8 @@ void add_rows(const spool::LedgerSegment& segment, const std::vector<RecordRange
 
 } // namespace
 
-Result<void> settle_by_operator(spool::Spool& spool, const spool::Job& job, const OperatorWord& word) {
+Result<void> settle_by_operator(spool::Spool& spool, const spool::Job& job, const OperatorWord& word,
+                                const std::string& who) {
     LINEFEED_ASSERT(word.given());
     const auto doubt = doubt_evidence(spool, job);
     if (!doubt) {
@@ -187,7 +181,7 @@ Result<void> settle_by_operator(spool::Spool& spool, const spool::Job& job, cons
         const bool skip = word.policy == InDoubtPolicy::skip;
         for (const spool::LedgerSegment& segment : doubt->segments) {
             entries.push_back({skip ? LedgerKind::skipped : LedgerKind::released, segment.run, segment.range,
-                               evidence(skip ? "do not print again" : "print again")});
+                               evidence(who, skip ? "do not print again" : "print again")});
         }
         return spool.append(job.id, entries);
     }
@@ -197,11 +191,11 @@ Result<void> settle_by_operator(spool::Spool& spool, const spool::Job& job, cons
         return printed.error();
     }
     const std::string said =
-        evidence(word.printed ? "printed: " + *word.printed : "last printed: " + word.last_printed);
+        evidence(who, word.printed ? "printed: " + *word.printed : "last printed: " + word.last_printed);
     for (const spool::LedgerSegment& segment : doubt->segments) {
         add_rows(segment, *printed, said, entries);
     }
     return spool.append(job.id, entries);
 }
 
-} // namespace linefeed::cli
+} // namespace linefeed::daemon

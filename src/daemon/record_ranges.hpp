@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-namespace linefeed::cli {
+namespace linefeed::daemon {
 
 /// "N" or "N-M"; std::nullopt if it is neither, or M < N.
 [[nodiscard]] std::optional<RecordRange> parse_record_range(std::string_view text);
@@ -23,4 +23,4 @@ namespace linefeed::cli {
 /// "5-9, 12, 14-20": the first of them, and how many more there are.
 [[nodiscard]] std::string to_text(const std::vector<RecordRange>& ranges);
 
-} // namespace linefeed::cli
+} // namespace linefeed::daemon

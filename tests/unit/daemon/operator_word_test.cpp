@@ -1,12 +1,12 @@
 // What an operator's word about records in doubt becomes in the ledger, and which words the evidence does not bear.
-#include "cli/operator_word.hpp"
+#include "daemon/operator_word.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cstdlib>
 #include <filesystem>
 
-namespace linefeed::cli {
+namespace linefeed::daemon {
 namespace {
 
 using spool::LedgerEntry;
@@ -95,7 +95,7 @@ protected:
     /// 1…10 are known to be printed, the printer reports 60, and has counted 14 prints: 46 are on no product.
     void doubt_with_hole() { run(closed(1, 100), closed(11, 90), {.total = 1014, .last_printed = 60}); }
 
-    [[nodiscard]] Result<void> say(const OperatorWord& word) { return settle_by_operator(*spool_, job_, word); }
+    [[nodiscard]] Result<void> say(const OperatorWord& word) { return settle_by_operator(*spool_, job_, word, "anna"); }
     [[nodiscard]] Result<void> last_printed(const std::string& said) { return say({.last_printed = said}); }
     [[nodiscard]] Result<void> printed(const std::string& said) { return say({.printed = said}); }
 
@@ -307,7 +307,7 @@ TEST_F(OperatorWordTest, shouldWriteWhoSaidWhatIntoEveryRow) {
         EXPECT_EQ(entry.kind, kinds[k]);
         EXPECT_EQ(entry.range, places[k]);
         EXPECT_EQ(entry.run, all.front().entry.run);
-        EXPECT_NE(entry.evidence.find(R"("operator":")"), std::string::npos) << entry.evidence;
+        EXPECT_NE(entry.evidence.find(R"("operator":"anna")"), std::string::npos) << entry.evidence;
         EXPECT_NE(entry.evidence.find(R"("said":"printed: 11-13,60")"), std::string::npos) << entry.evidence;
     }
     EXPECT_TRUE(spool_->verify_ledger());
@@ -335,4 +335,4 @@ TEST_F(OperatorWordTest, shouldWriteNothingWhenNothingIsInDoubt) {
 }
 
 } // namespace
-} // namespace linefeed::cli
+} // namespace linefeed::daemon

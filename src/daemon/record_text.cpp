@@ -1,4 +1,4 @@
-#include "cli/record_text.hpp"
+#include "daemon/record_text.hpp"
 
 #include "protocol/mail_record.hpp"
 #include "protocol/profile.hpp"
@@ -8,7 +8,7 @@
 #include <charconv>
 #include <string_view>
 
-namespace linefeed::cli {
+namespace linefeed::daemon {
 
 namespace {
 
@@ -97,4 +97,4 @@ std::string joined(const std::vector<std::string>& fields, const std::string& se
     return text;
 }
 
-} // namespace linefeed::cli
+} // namespace linefeed::daemon

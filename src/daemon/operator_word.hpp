@@ -3,13 +3,13 @@
 #pragma once
 
 #include "base/failure.hpp"
-#include "cli/doubt_evidence.hpp"
+#include "daemon/doubt_evidence.hpp"
 #include "spool/spool.hpp"
 
 #include <optional>
 #include <string>
 
-namespace linefeed::cli {
+namespace linefeed::daemon {
 
 /// `--in-doubt`.
 enum class InDoubtPolicy {
@@ -29,11 +29,12 @@ struct OperatorWord {
     [[nodiscard]] bool given() const { return policy != InDoubtPolicy::ask || !last_printed.empty() || printed; }
 };
 
-/// Settles every record in doubt of the job, durable at return; nothing is written if it fails. FailureKind::usage,
+/// Settles every record in doubt of the job by the word of `who`, durable at return; nothing is written if it fails. FailureKind::usage,
 /// with what to say instead, if
 /// - last_printed is neither one of the records in doubt nor the one before the first of them, or the text of several,
 /// - last_printed is said although records may have been left out before it, or the total print counter contradicts it,
 /// - printed names a record twice, or one that is not in doubt.
-[[nodiscard]] Result<void> settle_by_operator(spool::Spool& spool, const spool::Job& job, const OperatorWord& word);
+[[nodiscard]] Result<void> settle_by_operator(spool::Spool& spool, const spool::Job& job, const OperatorWord& word,
+                                              const std::string& who);
 
-} // namespace linefeed::cli
+} // namespace linefeed::daemon

@@ -1,9 +1,9 @@
-#include "cli/record_ranges.hpp"
+#include "daemon/record_ranges.hpp"
 
 #include <algorithm>
 #include <charconv>
 
-namespace linefeed::cli {
+namespace linefeed::daemon {
 
 namespace {
 
@@ -90,4 +90,4 @@ std::string to_text(const std::vector<RecordRange>& ranges) {
     return ranges.empty() ? "none" : text;
 }
 
-} // namespace linefeed::cli
+} // namespace linefeed::daemon

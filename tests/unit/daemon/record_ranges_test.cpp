@@ -1,9 +1,9 @@
 // Record numbers as people type them.
-#include "cli/record_ranges.hpp"
+#include "daemon/record_ranges.hpp"
 
 #include <gtest/gtest.h>
 
-namespace linefeed::cli {
+namespace linefeed::daemon {
 namespace {
 
 RecordRange closed(std::uint32_t first, std::uint32_t last) {
@@ -71,4 +71,4 @@ TEST(RecordRangesText, shouldBeWrittenAsTheyAreRead) {
 }
 
 } // namespace
-} // namespace linefeed::cli
+} // namespace linefeed::daemon

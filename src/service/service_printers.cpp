@@ -1,0 +1,26 @@
+// What is asked of a printer besides printing.
+#include "service/service.hpp"
+
+namespace linefeed::service {
+
+Result<std::vector<daemon::Finding>> Service::preflight(std::string_view printer) {
+    const auto line = known_line(printer);
+    return line ? Failure{FailureKind::internal, "not built yet"} : line.error();
+}
+
+Result<std::vector<daemon::FrameView>> Service::frames(std::string_view printer, bool) {
+    const auto line = known_line(printer);
+    return line ? Failure{FailureKind::internal, "not built yet"} : line.error();
+}
+
+Result<void> Service::acknowledge(const daemon::Caller&, std::string_view printer, std::uint32_t) {
+    const auto line = known_line(printer);
+    return line ? Failure{FailureKind::internal, "not built yet"} : line.error();
+}
+
+Result<void> Service::suspend_panel(const daemon::Caller&, std::string_view printer, bool, Duration) {
+    const auto line = known_line(printer);
+    return line ? Failure{FailureKind::internal, "not built yet"} : line.error();
+}
+
+} // namespace linefeed::service
