@@ -75,6 +75,12 @@ bool StoreThread::any(bool (StoreWork::*wants)() const) const {
 }
 
 void StoreThread::commit() {
+    const Clock::time_point begun = Clock::now();
+    write_pending();
+    commit_times_.record(Clock::now() - begun);
+}
+
+void StoreThread::write_pending() {
     writers_.clear();
     std::ranges::copy_if(stores_, std::back_inserter(writers_),
                          [](const Store* store) { return store->work().wants_commit(); });

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "daemon/event_signal.hpp"
+#include "daemon/line_meters.hpp"
 #include "daemon/store.hpp"
 #include "spool/spool.hpp"
 
@@ -28,6 +29,8 @@ public:
     /// Does something with the spool between two steps of the thread, and waits until it is done. What it throws is
     /// thrown here.
     void call(const std::function<void(spool::Spool&)>& what);
+    /// How long it took to write rows of the ledger, each time with its sync; any thread.
+    [[nodiscard]] const SharedHistogram& commit_times() const { return commit_times_; }
 
 private:
     using Clock = std::chrono::steady_clock;
@@ -37,6 +40,7 @@ private:
     [[nodiscard]] bool take_requests();
     [[nodiscard]] bool any(bool (StoreWork::*wants)() const) const;
     void commit();
+    void write_pending();
     [[nodiscard]] bool commit_together();
     bool take_turns(bool (StoreWork::*wants)() const, void (StoreWork::*step)());
     void checkpoint();
@@ -44,6 +48,7 @@ private:
 
     spool::Spool& spool_;
     EventSignal signal_;
+    SharedHistogram commit_times_;
     std::vector<Store*> stores_;
     std::vector<Store*> writers_; ///< those that want a commit; has room for all
     std::size_t next_turn_ = 0;   ///< whose turn it is to have a page read or written

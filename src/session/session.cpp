@@ -147,11 +147,16 @@ void Session::time_out(Parameter what, Instant now, Actions& actions) {
     }
 }
 
-void Session::on_written(Instant, Effects& out) {
+void Session::on_written(Instant now, Effects& out) {
     if (!outbox_.writing()) {
         return; // given up: the link has closed, or the farewell took too long
     }
     outbox_.write_done();
+    if (records_under_way_) {
+        records_under_way_->written_at = now;
+        out.push_back(*records_under_way_);
+        records_under_way_.reset();
+    }
     release_pages(out);
     flush(out);
     finish_if_drained(out);

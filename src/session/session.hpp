@@ -28,14 +28,22 @@ struct ReleasePage {
     const RecordPage* page = nullptr;
     friend bool operator==(const ReleasePage&, const ReleasePage&) = default;
 };
+/// These records have been handed to the kernel, in one write.
+struct RecordsWritten {
+    RecordRange records;
+    Instant allowed_at{}; ///< when the fact came that let the first of them go: mostly an answer
+    Instant written_at{};
+    friend bool operator==(const RecordsWritten&, const RecordsWritten&) = default;
+};
 /// Nothing more will be read or written.
 struct CloseLink {
     friend bool operator==(const CloseLink&, const CloseLink&) = default;
 };
 
 /// What the edge has to carry out, in order.
-using Effect = std::variant<std::monostate, Write, ReleasePage, CloseLink, feeder::Settle, feeder::BeginRun,
-                            feeder::AdoptRun, feeder::AskIntent, feeder::ConfirmPrinted, feeder::Notice, feeder::End>;
+using Effect =
+    std::variant<std::monostate, Write, ReleasePage, RecordsWritten, CloseLink, feeder::Settle, feeder::BeginRun,
+                 feeder::AdoptRun, feeder::AskIntent, feeder::ConfirmPrinted, feeder::Notice, feeder::End>;
 inline constexpr std::size_t max_effects = 48;
 using Effects = BoundedList<Effect, max_effects>;
 
@@ -104,6 +112,7 @@ private:
     void time_out(protocol::Parameter what, Instant now, feeder::Actions& actions);
     void carry_out(const feeder::Actions& actions, Instant now, Effects& out);
     void carry_out(const feeder::Action& action, Instant now, Effects& out);
+    void stage(RecordRange records, Instant now);
     void flush(Effects& out);
     void finish_if_drained(Effects& out);
     void release_pages(Effects& out);
@@ -114,6 +123,8 @@ private:
     protocol::FrameDecoder decoder_;
     Outbox outbox_;
     PageWindow pages_;
+    std::optional<RecordsWritten> staged_records_;    ///< in the outbox, for the next write
+    std::optional<RecordsWritten> records_under_way_; ///< with the write under way
     BoundedList<Inquiry, max_inquiries> inquiries_;
     Instant heard_at_{}; ///< of the last frame
     SessionStatistics statistics_;

@@ -4,6 +4,7 @@
 
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace linefeed::session {
@@ -51,7 +52,7 @@ void Session::carry_out(const feeder::Action& action, Instant now, Effects& out)
             protocol::append_message(session.outbox_.command_text(), protocol::StopAt{stop.number});
             session.outbox_.staged_command();
         }
-        void operator()(const feeder::SendRecords& send) const { session.pages_.stage(send.range, session.outbox_); }
+        void operator()(const feeder::SendRecords& send) const { session.stage(send.range, now); }
         void operator()(const feeder::SendEndMarker& marker) const {
             append_end_marker(session.outbox_.command_text(), marker.number, session.settings_.charsets,
                               session.settings_.escapes);
@@ -71,8 +72,18 @@ void Session::carry_out(const feeder::Action& action, Instant now, Effects& out)
     std::visit(Visitor{*this, now, out}, action);
 }
 
+void Session::stage(RecordRange records, Instant now) {
+    pages_.stage(records, outbox_);
+    if (staged_records_) {
+        staged_records_->records = RecordRange::closed(staged_records_->records.first(), records.last());
+    } else {
+        staged_records_ = RecordsWritten{records, now, {}};
+    }
+}
+
 void Session::flush(Effects& out) {
     if (connected_ && outbox_.begin_write()) {
+        records_under_way_ = std::exchange(staged_records_, std::nullopt);
         out.push_back(Write{});
     }
 }

@@ -116,6 +116,7 @@ public:
     bool writes_complete_at_once = true; ///< else with written()
     std::size_t writes = 0;
     std::size_t largest_write = 0; ///< pieces
+    std::vector<RecordsWritten> records_written;
     std::size_t pages_lent = 0;
     std::size_t pages_released = 0;
     bool ended = false;
@@ -150,6 +151,8 @@ private:
         } else if (const auto* release = std::get_if<ReleasePage>(&effect)) {
             ++pages_released;
             told << "release page " << release->page->first;
+        } else if (const auto* records = std::get_if<RecordsWritten>(&effect)) {
+            records_written.push_back(*records);
         } else if (std::holds_alternative<CloseLink>(effect)) {
             closed = true;
             told << "close";

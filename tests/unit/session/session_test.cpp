@@ -170,6 +170,34 @@ TEST(Session, shouldGatherWhatComesWhileAWriteIsUnderWay) {
     EXPECT_EQ(host.writes, 2U);
 }
 
+TEST(Session, shouldTellWhenRecordsWereAllowedAndWhenTheyWereWritten) {
+    const auto pages = thousand_records();
+    Conversation host;
+    host.print(pages);
+    EXPECT_EQ(host.records_written.size(), 1U); // the fill
+    host.records_written.clear();
+    host.writes_complete_at_once = false;
+    std::vector<Instant> answered;
+    for (const std::uint32_t printed : {16U, 32U, 48U}) {
+        host.now += milliseconds{20};
+        host.wake();
+        answered.push_back(host.now);
+        host.receive(mail(255 - printed, printed, 1000));
+    }
+    EXPECT_TRUE(host.records_written.empty());
+    host.now += milliseconds{1};
+    const Instant first_written = host.now;
+    host.written(); // an inquiry went first
+    host.now += milliseconds{1};
+    host.written();
+    using Written = std::vector<RecordsWritten>;
+    const auto numbers = [](std::uint32_t first, std::uint32_t last) {
+        return RecordRange::closed(RecordNumber{first}, RecordNumber{last});
+    };
+    EXPECT_EQ(host.records_written, (Written{{numbers(257, 304), answered[0], first_written + milliseconds{1}}}));
+    EXPECT_EQ(host.sent().find("^0=MR305"), std::string::npos);
+}
+
 TEST(Session, shouldGiveAPageBackOnlyWhenItIsWritten) {
     const auto pages = thousand_records();
     Conversation host;
