@@ -18,7 +18,7 @@ JobRun::JobRun(RunThreads threads, spool::Spool& spool, const spool::Job& job, R
     , settings_(settings)
     , store_(StoreWork{spool, job.id, LedgerKeeper{spool, job.id, wanted, link::to_string(settings.printer), open},
                        supply})
-    , session_(settings.session, make_plan(open, job.id, wanted)) {
+    , session_(settings.session, make_plan(open, job.id, wanted), settings.frames) {
     if (settings.meters != nullptr) {
         measure_.emplace(*settings.meters, open ? open->facts.printed_through : RecordNumber{});
     }
@@ -52,9 +52,25 @@ void JobRun::request_stop() {
     store_.replies_signal().notify();
 }
 
+namespace {
+
+bool went_wrong(feeder::OutcomeCode code) {
+    using feeder::OutcomeCode;
+    return code != OutcomeCode::finished && code != OutcomeCode::nothing_to_print &&
+           code != OutcomeCode::stop_requested;
+}
+
+} // namespace
+
 void JobRun::join() {
     fed_.wait(true);
     store_.join();
+    if (finished() && settings_.frames != nullptr) {
+        if (went_wrong(outcome_.code)) {
+            settings_.frames->keep();
+        }
+        settings_.frames = nullptr; // the next run writes there now
+    }
     if (!store_.failure().empty()) {
         detail_ = store_.failure();
     }

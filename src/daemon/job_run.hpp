@@ -3,6 +3,7 @@
 #pragma once
 
 #include "daemon/feed_thread.hpp"
+#include "daemon/frame_history.hpp"
 #include "daemon/run_measure.hpp"
 #include "daemon/store_thread.hpp"
 #include "feeder/outcome.hpp"
@@ -27,7 +28,9 @@ struct JobRunSettings {
     std::vector<boost::asio::ip::tcp::endpoint> endpoints; ///< of the printer, resolved
     session::SessionSettings session;
     Duration connect_timeout = std::chrono::seconds{3};
-    LineMeters* meters = nullptr; ///< of the printer, if anybody wants them; live longer than the run
+    // Of the printer, if anybody wants them; both live longer than the run.
+    LineMeters* meters = nullptr;
+    FrameHistory* frames = nullptr; ///< keep() is called when the run has ended otherwise than wanted
 };
 
 /// A glance at the run, from any thread.

@@ -8,6 +8,7 @@
 #include "feeder/feeder.hpp"
 #include "protocol/frame_decoder.hpp"
 #include "protocol/messages.hpp"
+#include "session/frame_observer.hpp"
 #include "session/outbox.hpp"
 #include "session/page_window.hpp"
 
@@ -69,7 +70,8 @@ struct SessionStatistics {
 /// next_wake(). Each appends to `out`, in order. After End nothing follows but CloseLink.
 class Session {
 public:
-    Session(const SessionSettings& settings, const feeder::FeederPlan& plan);
+    /// `observer`, if anybody keeps the frames, must outlive it.
+    Session(const SessionSettings& settings, const feeder::FeederPlan& plan, FrameObserver* observer = nullptr);
 
     void on_connected(Instant now, Effects& out);
     /// Bytes as they came, in any split.
@@ -104,6 +106,7 @@ private:
     };
     static constexpr std::size_t max_inquiries = 64;
 
+    void take_damage(std::uint64_t bytes, Instant now);
     void take_frame(const protocol::Frame& frame, Instant now, feeder::Actions& actions);
     [[nodiscard]] bool take_answer(const protocol::Message& message, Instant now, feeder::Actions& actions);
     /// Removes the oldest inquiry for `what`; false if there was none.
@@ -113,12 +116,14 @@ private:
     void carry_out(const feeder::Actions& actions, Instant now, Effects& out);
     void carry_out(const feeder::Action& action, Instant now, Effects& out);
     void stage(RecordRange records, Instant now);
+    void staged_command(Instant now);
     void flush(Effects& out);
     void finish_if_drained(Effects& out);
     void release_pages(Effects& out);
     [[nodiscard]] std::optional<Instant> first_deadline() const;
 
     SessionSettings settings_;
+    FrameObserver* observer_;
     feeder::Feeder feeder_;
     protocol::FrameDecoder decoder_;
     Outbox outbox_;

@@ -82,9 +82,11 @@ void wait_for(daemon::JobRun& run, std::uint32_t printed) {
 
 TEST_F(FeedThreadTest, shouldNeitherAllocateNorLockNorTouchAFileInTheSteadyState) {
     daemon::LineMeters meters;
-    daemon::JobRunSettings with_meters = settings();
-    with_meters.meters = &meters;
-    daemon::JobRun run{{feed_, *store_}, directory_.spool(), job_, job_.records, std::nullopt, with_meters};
+    daemon::JobRunSettings watched = settings();
+    watched.meters = &meters;
+    daemon::FrameHistory frames;
+    watched.frames = &frames;
+    daemon::JobRun run{{feed_, *store_}, directory_.spool(), job_, job_.records, std::nullopt, watched};
     run.start();
     wait_for(run, warm_through);
     ASSERT_FALSE(run.finished());
@@ -110,6 +112,8 @@ TEST_F(FeedThreadTest, shouldNeitherAllocateNorLockNorTouchAFileInTheSteadyState
     EXPECT_GT(store_->commit_times().count_from(Duration::zero()), 0U);
     EXPECT_EQ(run.progress().machine->machine, protocol::MachineState::ready_to_print);
     EXPECT_EQ(run.progress().fifo_depth, 256U);
+    EXPECT_EQ(frames.frames().size(), 2 * daemon::FrameHistory::frames_kept);
+    EXPECT_TRUE(frames.kept().empty());
 
     // It was at work: otherwise the counts would prove nothing.
     std::cout << seconds << " s, " << seen.sends << " writes and " << seen.receives << " reads of the feed thread, "
@@ -159,9 +163,11 @@ TEST(ManyPrintersFeedThreadTest, shouldNeitherAllocateNorLockNorTouchAFileInTheS
         daemon::StoreThread store{directory.spool()};
         static_cast<void>(feed.start());
         std::vector<daemon::LineMeters> meters(printers);
+        std::vector<daemon::FrameHistory> frames(printers);
         std::vector<std::unique_ptr<daemon::JobRun>> runs;
         for (int i = 0; i < printers; ++i) {
             settings[static_cast<std::size_t>(i)].meters = &meters[static_cast<std::size_t>(i)];
+            settings[static_cast<std::size_t>(i)].frames = &frames[static_cast<std::size_t>(i)];
             store.call([&](spool::Spool& spool) {
                 const spool::Job& job = jobs[static_cast<std::size_t>(i)];
                 runs.push_back(std::make_unique<daemon::JobRun>(daemon::RunThreads{feed, store}, spool, job,

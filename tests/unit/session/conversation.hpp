@@ -37,8 +37,9 @@ inline std::string plain_text(std::uint32_t number) {
 
 class Conversation {
 public:
-    explicit Conversation(const SessionSettings& settings = {}, const feeder::FeederPlan& plan = {})
-        : session(settings, plan) {}
+    explicit Conversation(const SessionSettings& settings = {}, const feeder::FeederPlan& plan = {},
+                          FrameObserver* observer = nullptr)
+        : session(settings, plan, observer) {}
 
     void connect() { session.on_connected(now, effects), settle(); }
     void receive(std::string_view bytes) { session.on_received(bytes, now, effects), settle(); }
