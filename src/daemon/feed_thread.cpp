@@ -7,6 +7,14 @@
 
 namespace linefeed::daemon {
 
+namespace {
+thread_local bool feeds = false;
+} // namespace
+
+bool FeedThread::is_current() noexcept {
+    return feeds;
+}
+
 FeedThread::FeedThread(const RealTimeSettings& settings)
     : settings_(settings)
     , door_(context_, ::dup(door_signal_.descriptor())) {}
@@ -25,6 +33,7 @@ std::string FeedThread::start() {
     std::promise<std::string> granted;
     auto told = granted.get_future();
     thread_ = std::thread{[this, &granted] {
+        feeds = true;
         granted.set_value(make_real_time(settings_));
         context_.run();
     }};

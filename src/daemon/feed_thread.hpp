@@ -36,6 +36,8 @@ public:
     [[nodiscard]] std::string start();
     /// Any thread but the feed thread. Precondition: fewer than max_waiting have not been let in yet.
     void let_in(Guest& guest);
+    /// Whether the caller is on a feed thread: for the assertions of what has no place there.
+    [[nodiscard]] static bool is_current() noexcept;
     /// For the feed thread alone: it never locks. Other threads come in through rings and signals.
     [[nodiscard]] boost::asio::io_context& context() { return context_; }
 
