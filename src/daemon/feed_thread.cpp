@@ -2,6 +2,9 @@
 
 #include "base/assert.hpp"
 
+#include <boost/asio/bind_allocator.hpp>
+
+#include <chrono>
 #include <future>
 #include <unistd.h>
 
@@ -9,6 +12,7 @@ namespace linefeed::daemon {
 
 namespace {
 thread_local bool feeds = false;
+constexpr auto beat_interval = std::chrono::milliseconds{100};
 } // namespace
 
 bool FeedThread::is_current() noexcept {
@@ -17,7 +21,8 @@ bool FeedThread::is_current() noexcept {
 
 FeedThread::FeedThread(const RealTimeSettings& settings)
     : settings_(settings)
-    , door_(context_, ::dup(door_signal_.descriptor())) {}
+    , door_(context_, ::dup(door_signal_.descriptor()))
+    , beat_timer_(context_) {}
 
 FeedThread::~FeedThread() {
     if (thread_.joinable()) {
@@ -30,6 +35,7 @@ FeedThread::~FeedThread() {
 std::string FeedThread::start() {
     LINEFEED_ASSERT(!thread_.joinable());
     wait_for_guests();
+    beat();
     std::promise<std::string> granted;
     auto told = granted.get_future();
     thread_ = std::thread{[this, &granted] {
@@ -46,6 +52,17 @@ void FeedThread::let_in(Guest& guest) {
         LINEFEED_ASSERT(waiting_.push(&guest));
     }
     door_signal_.notify();
+}
+
+void FeedThread::beat() {
+    beats_.fetch_add(1, std::memory_order_relaxed);
+    beat_timer_.expires_after(beat_interval);
+    const auto handler = [this](const boost::system::error_code& error) {
+        if (!error) {
+            beat();
+        }
+    };
+    beat_timer_.async_wait(boost::asio::bind_allocator(link::HandlerAllocator<>{beat_memory_}, handler));
 }
 
 void FeedThread::wait_for_guests() {

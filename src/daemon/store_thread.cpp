@@ -144,6 +144,7 @@ void StoreThread::run() {
     Clock::time_point last_commit = Clock::now();
     Clock::time_point last_checkpoint = last_commit;
     while (true) {
+        beats_ += 1;
         let_in();
         {
             const std::lock_guard lock{outside_};

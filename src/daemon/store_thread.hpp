@@ -29,6 +29,8 @@ public:
     /// Does something with the spool between two steps of the thread, and waits until it is done. What it throws is
     /// thrown here.
     void call(const std::function<void(spool::Spool&)>& what);
+    /// Rises at least once a second as long as the thread gets on, a call() of others included; any thread.
+    [[nodiscard]] std::uint64_t beats() const { return beats_; }
     /// How long it took to write rows of the ledger, each time with its sync; any thread.
     [[nodiscard]] const SharedHistogram& commit_times() const { return commit_times_; }
 
@@ -49,6 +51,7 @@ private:
     spool::Spool& spool_;
     EventSignal signal_;
     SharedHistogram commit_times_;
+    SharedCount beats_;
     std::vector<Store*> stores_;
     std::vector<Store*> writers_; ///< those that want a commit; has room for all
     std::size_t next_turn_ = 0;   ///< whose turn it is to have a page read or written
