@@ -131,12 +131,13 @@ struct Finding {
     std::string advice; ///< what to do; empty if ok
 };
 
-/// A frame of a conversation.
+/// A frame of a conversation; or consecutive mail records that went out together; or bytes that are no frame.
 struct FrameView {
     std::int64_t time_ns = 0; ///< wall time
     bool sent = false;        ///< by linefeed
-    std::string bytes;        ///< raw; at most 128 of them
-    std::uint32_t size = 0;   ///< of the whole frame
+    std::string bytes;        ///< raw; at most 128 of them; of several records, the first one's; none: no frame
+    std::uint32_t size = 0;   ///< of the whole frame with its CR, or of all the records
+    RecordRange records{};    ///< not empty: the numbers of the mail records, all of which this entry stands for
 };
 
 struct EventView {

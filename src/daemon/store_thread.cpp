@@ -95,6 +95,12 @@ bool StoreThread::any(bool (StoreWork::*wants)() const) const {
 }
 
 void StoreThread::commit() {
+    const Clock::time_point begun = Clock::now();
+    write_pending();
+    commit_times_.record(Clock::now() - begun);
+}
+
+void StoreThread::write_pending() {
     writers_.clear();
     std::ranges::copy_if(stores_, std::back_inserter(writers_),
                          [](const Store* store) { return store->work().wants_commit(); });
@@ -176,6 +182,7 @@ bool StoreThread::work(Clock::time_point now) {
 
 void StoreThread::run() {
     while (true) {
+        beats_ += 1;
         let_in();
         {
             const std::lock_guard lock{outside_};

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "daemon/event_signal.hpp"
+#include "daemon/line_meters.hpp"
 #include "daemon/store.hpp"
 #include "spool/spool.hpp"
 
@@ -32,6 +33,10 @@ public:
     void call(const std::function<void(spool::Spool&)>& what);
     /// As call(), but does not wait. Precondition: it throws nothing.
     void post(std::function<void(spool::Spool&)> what);
+    /// Rises at least once a second as long as the thread gets on, a call() of others included; any thread.
+    [[nodiscard]] std::uint64_t beats() const { return beats_; }
+    /// How long it took to write rows of the ledger, each time with its sync; any thread.
+    [[nodiscard]] const SharedHistogram& commit_times() const { return commit_times_; }
 
 private:
     using Clock = std::chrono::steady_clock;
@@ -44,6 +49,7 @@ private:
     [[nodiscard]] bool take_requests();
     [[nodiscard]] bool any(bool (StoreWork::*wants)() const) const;
     void commit();
+    void write_pending();
     [[nodiscard]] bool commit_together();
     bool take_turns(bool (StoreWork::*wants)() const, void (StoreWork::*step)());
     void checkpoint();
@@ -51,6 +57,8 @@ private:
 
     spool::Spool& spool_;
     EventSignal signal_;
+    SharedHistogram commit_times_;
+    SharedCount beats_;
     std::vector<Store*> stores_;
     std::vector<Store*> writers_; ///< those that want a commit; has room for all
     std::size_t next_turn_ = 0;   ///< whose turn it is to have a page read or written

@@ -125,7 +125,9 @@ public:
     [[nodiscard]] Phase phase() const { return phase_; }
     [[nodiscard]] const Refill& refill() const { return refill_; }
     [[nodiscard]] double rate() const { return pacing_.rate(); }
+    /// As last reported.
     [[nodiscard]] const protocol::MailStatus& mail() const { return mail_; }
+    [[nodiscard]] const protocol::MachineStatus& machine() const { return status_; }
 
 private:
     enum class StopPoint {

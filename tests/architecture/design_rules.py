@@ -64,5 +64,6 @@ LIBRARY_FOLDERS = {
     r"CLI/.*": {"cli", "simulator", "linefeedd"},
     r"openssl/.*": {"spool"},
     r"yaml-cpp/.*": {"config"},
+    r"spdlog/.*|systemd/.*": {"daemon"},
     r"nlohmann/.*": {"spool", "simulator", "config", "daemon", "cli"},
 }
