@@ -1,6 +1,10 @@
 // linefeedd, the service: reads its settings, runs until SIGTERM, and leaves no line printing. CLI11 stays in this file.
 #include "cli/check_config_command.hpp"
 #include "config/load.hpp"
+#include "daemon/log.hpp"
+#include "daemon/service_manager.hpp"
+#include "protocol/printable.hpp"
+#include "service/event_logging.hpp"
 #include "service/service.hpp"
 
 #include <CLI/CLI.hpp>
@@ -32,10 +36,11 @@ public:
         ::pthread_sigmask(SIG_BLOCK, &signals_, nullptr);
         ::signal(SIGPIPE, SIG_IGN); // whoever reads may go away
     }
-    /// The next signal, 0 if none comes within a second.
-    [[nodiscard]] int wait() const {
-        const timespec second{1, 0};
-        const int signal = ::sigtimedwait(&signals_, nullptr, &second);
+    /// The next signal, 0 if none comes in that time. Precondition: `time` ≤ 1 s.
+    [[nodiscard]] int wait(linefeed::Duration time) const {
+        constexpr linefeed::Duration second = std::chrono::seconds{1};
+        const timespec patience{time / second, (time % second).count()};
+        const int signal = ::sigtimedwait(&signals_, nullptr, &patience);
         return signal > 0 ? signal : 0;
     }
 
@@ -47,37 +52,56 @@ linefeed::config::Checked<linefeed::config::Settings> load(const std::filesystem
     return linefeed::config::load(file, linefeed::config::read_environment(::environ));
 }
 
-void tell(const linefeed::spool::Event& event) {
-    std::fprintf(stderr, "linefeedd: %s%s%s%s: %s\n", event.kind.c_str(), event.printer.empty() ? "" : " ",
-                 event.printer.c_str(), event.job ? (" job " + std::to_string(static_cast<std::int64_t>(*event.job))).c_str() : "",
-                 event.message.c_str());
+using linefeed::daemon::Watchdog;
+
+/// Until SIGTERM; SIGHUP reads the settings again.
+void watch(linefeed::service::Service& service, linefeed::daemon::Log& log, const Signals& signals) {
+    constexpr auto tick_interval = std::chrono::seconds{10};
+    using Clock = std::chrono::steady_clock;
+    Watchdog watchdog{service.hearts()};
+    const auto look_interval = Watchdog::look_interval();
+    Clock::time_point ticked = Clock::now();
+    while (true) {
+        switch (signals.wait(look_interval.value_or(std::chrono::seconds{1}))) {
+        case SIGTERM:
+        case SIGINT:
+            return;
+        case SIGHUP:
+            linefeed::daemon::notify_reloading();
+            static_cast<void>(service.reload({"linefeedd (SIGHUP)"})); // an event tells what came of it
+            log.set_levels(service.settings()->logging);
+            linefeed::daemon::notify_ready("running");
+            break;
+        default:
+            break;
+        }
+        if (look_interval) {
+            static_cast<void>(watchdog.look());
+        }
+        if (Clock::now() - ticked >= tick_interval) {
+            service.tick();
+            ticked = Clock::now();
+        }
+    }
 }
 
 ExitCode serve(const Options& options, const linefeed::config::Settings& settings, const Signals& signals) {
-    auto service = linefeed::service::Service::open(
-        {settings, [&options] { return load(options.config); }, tell, LINEFEED_VERSION});
-    if (!service) {
-        std::cerr << "linefeedd: " << service.error().message << '\n';
+    linefeed::daemon::Log log{settings.logging, linefeed::daemon::make_log_target(settings.logging.target)};
+    auto opened = linefeed::service::Service::open(
+        {settings, [&options] { return load(options.config); },
+         [&log](const linefeed::spool::Event& event) { linefeed::service::log_event(log, event); }, LINEFEED_VERSION});
+    if (!opened) {
+        log.write(linefeed::config::LogComponent::service, linefeed::config::LogLevel::error, opened.error().message);
+        std::cerr << "linefeedd: " << linefeed::protocol::printable(opened.error().message) << '\n';
         return ExitCode::other;
     }
-    // The place of the API: it serves the operations of *service from here on, and ends before shut_down().
-    constexpr int checkpoint_seconds = 10;
-    for (int quiet = 1;; ++quiet) {
-        switch (signals.wait()) {
-        case SIGTERM:
-        case SIGINT:
-            (*service)->shut_down();
-            return ExitCode::done;
-        case SIGHUP:
-            static_cast<void>((*service)->reload({"linefeedd (SIGHUP)"})); // an event tells what came of it
-            break;
-        default:
-            if (quiet % checkpoint_seconds == 0) {
-                (*service)->tick();
-            }
-            break;
-        }
-    }
+    linefeed::service::Service& service = **opened;
+    // The place of the API: constructed with (service, settings) and started here, it serves until watch() returns.
+    linefeed::daemon::notify_ready("running");
+    watch(service, log, signals);
+    linefeed::daemon::notify_stopping("stopping the lines");
+    service.shut_down();
+    return ExitCode::done;
 }
 
 int run(int argc, char** argv) {

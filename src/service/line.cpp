@@ -2,7 +2,10 @@
 
 #include "base/assert.hpp"
 #include "daemon/events.hpp"
+#include "daemon/wall_clock.hpp"
 
+#include <algorithm>
+#include <chrono>
 #include <utility>
 
 namespace linefeed::service {
@@ -121,9 +124,37 @@ std::optional<double> seconds_for(RecordCount records, double rate_per_s) {
     return rate_per_s > 0 ? std::optional{static_cast<double>(records.value()) / rate_per_s} : std::nullopt;
 }
 
+/// Less than this is worth a word while the job goes on.
+constexpr double low_data_s = 60;
+
+daemon::PrinterFigures figures_of(const daemon::RunProgress& progress, RecordRange records) {
+    daemon::PrinterFigures figures;
+    figures.fifo_depth = progress.fifo_depth;
+    figures.fifo_entries = progress.fifo_entries;
+    figures.rate_per_s = progress.rate_per_s;
+    if (!progress.range.empty()) {
+        figures.credit = static_cast<std::uint32_t>(progress.credit().value());
+        figures.time_to_empty_s = progress.time_to_empty_s();
+        figures.lead_time_s = figures.time_to_empty_s; // the newest record is the last to be printed
+        const RecordNumber last = std::max(records.last(), progress.range.last());
+        figures.data_left_s = seconds_for(last - progress.printed_through, progress.rate_per_s);
+    }
+    return figures;
+}
+
 } // namespace
 
-daemon::PrinterView Line::view() const {
+/// With mutex_ held.
+void Line::hear(const daemon::RunProgress& progress) {
+    if (!progress.machine || !progress.heard_at) {
+        return;
+    }
+    const auto now = std::chrono::steady_clock::now().time_since_epoch();
+    const Duration ago = now - progress.heard_at->time_since_epoch();
+    heard_ = {daemon::wall_clock_ns() - ago.count(), progress.machine};
+}
+
+daemon::PrinterView Line::view() {
     const std::optional<Active> at = active();
     const std::lock_guard lock{mutex_};
     daemon::PrinterView view;
@@ -137,26 +168,29 @@ daemon::PrinterView Line::view() const {
     if (at) {
         view.job = at->job;
     }
-    view.error = last_error_;
-    if (const config::ErrorEntry* const entry = last_error_.none() ? nullptr : settings_->errors.find(last_error_)) {
-        view.error_meaning = entry->meaning;
-        view.error_advice = entry->advice;
-    }
     if (run_ != nullptr) {
         const daemon::RunProgress progress = run_->progress();
-        view.link = progress.range.empty() ? daemon::LinkState::connecting : daemon::LinkState::up;
-        view.figures.rate_per_s = progress.rate_per_s;
-        if (!progress.range.empty()) {
-            view.figures.time_to_empty_s =
-                seconds_for(progress.sent_through - progress.printed_through, progress.rate_per_s);
-            view.figures.lead_time_s = view.figures.time_to_empty_s;
-            const RecordNumber last = records_ ? records_->last() : progress.range.last();
-            view.figures.data_left_s = seconds_for(last - progress.printed_through, progress.rate_per_s);
-        }
+        hear(progress);
+        view.link = progress.heard_at ? daemon::LinkState::up : daemon::LinkState::connecting;
+        view.figures = figures_of(progress, records_.value_or(progress.range));
+    }
+    view.heard_ns = heard_.at_ns;
+    if (heard_.machine) {
+        view.machine = to_string(heard_.machine->machine);
+        view.nozzle = to_string(heard_.machine->nozzle);
+        view.error = heard_.machine->error;
+    }
+    if (const config::ErrorEntry* const entry = view.error.none() ? nullptr : settings_->errors.find(view.error)) {
+        view.error_meaning = entry->meaning;
+        view.error_advice = entry->advice;
     }
     if (supply_low_) {
         view.warnings.emplace_back("the printer runs empty soon: the records are read more slowly than the line prints "
                                    "them; look at disk and load of this machine");
+    }
+    if (view.figures.data_left_s && *view.figures.data_left_s < low_data_s) {
+        view.warnings.push_back("the job ends in " + std::to_string(static_cast<int>(*view.figures.data_left_s)) +
+                                " s: the line stops then");
     }
     return view;
 }

@@ -65,8 +65,10 @@ public:
     [[nodiscard]] std::optional<Active> active() const;
     [[nodiscard]] bool idle() const { return !active(); }
     /// Without its queue.
-    [[nodiscard]] daemon::PrinterView view() const;
+    [[nodiscard]] daemon::PrinterView view();
     [[nodiscard]] const std::string& printer() const { return printer_; }
+    [[nodiscard]] const daemon::LineMeters& meters() const { return meters_; }
+    [[nodiscard]] const daemon::FrameHistory& frames() const { return frames_; }
 
 private:
     // line.cpp: the thread and its orders
@@ -78,7 +80,7 @@ private:
     // line_printing.cpp: from the order to its end
     void print(spool::JobId job);
     [[nodiscard]] Result<Ending> print_runs(spool::JobId job);
-    [[nodiscard]] Result<daemon::JobRunSettings> run_settings(const spool::Job& job) const;
+    [[nodiscard]] Result<daemon::JobRunSettings> run_settings(const spool::Job& job);
     [[nodiscard]] Ending run(const JobFacts& facts, RecordRange wanted, const std::optional<daemon::OpenIssue>& open,
                              const daemon::JobRunSettings& settings);
     void watch(daemon::JobRun& run, spool::JobId job);
@@ -87,6 +89,8 @@ private:
 
     LineServices services_;
     std::string printer_;
+    daemon::LineMeters meters_;
+    daemon::FrameHistory frames_;
 
     mutable std::mutex mutex_; ///< for what follows
     mutable std::condition_variable changed_;
@@ -99,7 +103,13 @@ private:
     std::optional<RecordRange> records_; ///< of the job that is on the line
     bool supply_low_ = false;
     std::optional<Ending> last_ending_;
-    protocol::PrinterError last_error_{};
+    /// As last heard of, by whatever way.
+    struct Heard {
+        std::int64_t at_ns = 0; ///< wall time; 0 = never
+        std::optional<protocol::MachineStatus> machine;
+    };
+    void hear(const daemon::RunProgress& progress);
+    Heard heard_;
 
     std::thread thread_;
 };

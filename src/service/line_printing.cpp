@@ -52,7 +52,7 @@ void Line::print(spool::JobId job) {
     conclude(*ending);
 }
 
-Result<daemon::JobRunSettings> Line::run_settings(const spool::Job& job) const {
+Result<daemon::JobRunSettings> Line::run_settings(const spool::Job& job) {
     const SharedSettings all = settings();
     const config::PrinterSettings& own = *all->printer(printer_);
     const auto endpoints = link::resolve(own.address);
@@ -63,6 +63,8 @@ Result<daemon::JobRunSettings> Line::run_settings(const spool::Job& job) const {
     settings.printer = own.address;
     settings.endpoints = *endpoints;
     settings.connect_timeout = own.connect_timeout;
+    settings.meters = &meters_;
+    settings.frames = &frames_;
     settings.session.escapes = own.profile.escapes;
     settings.session.charsets = daemon::record_format(job).charsets;
     settings.session.reply_timeout = own.reply_timeout;
@@ -157,6 +159,7 @@ void Line::watch(JobRun& run, spool::JobId job) {
         }
     }
     const std::lock_guard lock{mutex_};
+    hear(run.progress());
     run_ = nullptr;
 }
 
@@ -171,16 +174,8 @@ void Line::take_notice(const feeder::Notice& notice, spool::JobId job) {
         supply_low_ = true;
         break;
     }
-    case NoticeCode::printer_warning: {
-        const std::lock_guard lock{mutex_};
-        last_error_ = notice.error;
-        break;
-    }
-    case NoticeCode::error_acknowledged: {
-        const std::lock_guard lock{mutex_};
-        last_error_ = {};
-        break;
-    }
+    case NoticeCode::printer_warning:
+    case NoticeCode::error_acknowledged:
     case NoticeCode::stop_point_ignored:
     case NoticeCode::entries_differ:
         break;
@@ -224,7 +219,6 @@ void Line::conclude(const Ending& given) {
     {
         const std::lock_guard lock{mutex_};
         last_ending_ = ending;
-        last_error_ = ending.outcome.error;
         supply_low_ = false;
     }
     if (!after) {

@@ -119,6 +119,10 @@ void Service::tick() {
     static_cast<void>(access_.write([](spool::Spool& spool) { return spool.checkpoint(); }));
 }
 
+std::vector<daemon::Heart> Service::hearts() const {
+    return {{"feed thread", [this] { return feed_.beats(); }}, {"store thread", [this] { return store_.beats(); }}};
+}
+
 SharedSettings Service::settings() const {
     const std::lock_guard lock{parts_mutex_};
     return settings_;

@@ -6,6 +6,7 @@
 #include "config/settings.hpp"
 #include "daemon/feed_thread.hpp"
 #include "daemon/operations.hpp"
+#include "daemon/service_manager.hpp"
 #include "daemon/store_thread.hpp"
 #include "service/event_log.hpp"
 #include "service/folder.hpp"
@@ -45,8 +46,12 @@ public:
 
     /// Starts nothing any more, breaks off imports, stops all lines and waits until the truth is in the ledger.
     void shut_down();
-    /// To be called every second or so.
+    /// To be called every ten seconds or so.
     void tick();
+    /// The threads that must not stand still.
+    [[nodiscard]] std::vector<daemon::Heart> hearts() const;
+    /// What is in force, also after a reload.
+    [[nodiscard]] SharedSettings settings() const;
 
     // service_views.cpp: what there is to see
     [[nodiscard]] daemon::ServiceStatus status() override;
@@ -111,7 +116,6 @@ private:
     void open_folders();
 
     // Helpers of all
-    [[nodiscard]] SharedSettings settings() const;
     /// nullptr = there is none.
     [[nodiscard]] LinePtr line(std::string_view printer) const;
     [[nodiscard]] std::vector<LinePtr> lines() const;

@@ -8,9 +8,12 @@ Result<std::vector<daemon::Finding>> Service::preflight(std::string_view printer
     return line ? Failure{FailureKind::internal, "not built yet"} : line.error();
 }
 
-Result<std::vector<daemon::FrameView>> Service::frames(std::string_view printer, bool) {
+Result<std::vector<daemon::FrameView>> Service::frames(std::string_view printer, bool error) {
     const auto line = known_line(printer);
-    return line ? Failure{FailureKind::internal, "not built yet"} : line.error();
+    if (!line) {
+        return line.error();
+    }
+    return error ? (*line)->frames().kept() : (*line)->frames().frames();
 }
 
 Result<void> Service::acknowledge(const daemon::Caller&, std::string_view printer, std::uint32_t) {

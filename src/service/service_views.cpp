@@ -62,8 +62,9 @@ daemon::ServiceMetrics Service::metrics() {
     metrics.intake_files_duplicate = counts_.duplicates;
     metrics.intake_files_failed = counts_.failed;
     for (const LinePtr& line : lines()) {
-        metrics.printers.emplace_back().printer = line->printer();
+        metrics.printers.push_back(daemon::metrics_of(line->printer(), line->meters()));
     }
+    metrics.ledger_commit = daemon::view(store_.commit_times());
     return metrics;
 }
 

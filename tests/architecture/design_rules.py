@@ -17,7 +17,7 @@ MAY_USE = {
     "daemon": {"base", "protocol", "feeder", "session", "link", "spool", "intake", "config"},
     "service": {"base", "protocol", "feeder", "session", "link", "spool", "intake", "config", "daemon"},
     "cli": {"base", "protocol", "feeder", "session", "link", "spool", "intake", "config", "daemon"},
-    "linefeedd": {"base", "spool", "config", "daemon", "service", "cli"},
+    "linefeedd": {"base", "protocol", "spool", "config", "daemon", "service", "cli"},
 }
 
 # Folder -> folder -> the only headers of the second that the first may include: the feeder knows the message types, never bytes.
