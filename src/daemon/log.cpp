@@ -144,7 +144,10 @@ Log::Log(const config::LoggingSettings& settings, std::unique_ptr<LogTarget> tar
     set_levels(settings);
 }
 
-Log::~Log() = default;
+/// The queue's thread ends first: it works with all the rest.
+Log::~Log() {
+    queue_.reset();
+}
 
 spdlog::async_logger& Log::logger(LogComponent component) const {
     return *loggers_[static_cast<std::size_t>(component)];

@@ -2,10 +2,8 @@
 
 #include "base/assert.hpp"
 #include "daemon/events.hpp"
-#include "daemon/wall_clock.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <utility>
 
 namespace linefeed::service {
@@ -105,9 +103,12 @@ std::optional<Line::Active> Line::active() const {
 
 namespace {
 
-PrinterPhase phase_of_printer(const std::optional<Line::Active>& active) {
+PrinterPhase phase_of_printer(const std::optional<Line::Active>& active, bool checking) {
     if (!active) {
         return PrinterPhase::idle;
+    }
+    if (checking && active->phase == JobPhase::arming) {
+        return PrinterPhase::checking;
     }
     switch (active->phase) {
     case JobPhase::printing:
@@ -144,22 +145,12 @@ daemon::PrinterFigures figures_of(const daemon::RunProgress& progress, RecordRan
 
 } // namespace
 
-/// With mutex_ held.
-void Line::hear(const daemon::RunProgress& progress) {
-    if (!progress.machine || !progress.heard_at) {
-        return;
-    }
-    const auto now = std::chrono::steady_clock::now().time_since_epoch();
-    const Duration ago = now - progress.heard_at->time_since_epoch();
-    heard_ = {daemon::wall_clock_ns() - ago.count(), progress.machine};
-}
-
 daemon::PrinterView Line::view() {
     const std::optional<Active> at = active();
     const std::lock_guard lock{mutex_};
     daemon::PrinterView view;
     view.name = printer_;
-    view.phase = phase_of_printer(at);
+    view.phase = phase_of_printer(at, checking_);
     if (const config::PrinterSettings* const own = settings_->printer(printer_)) {
         view.address = link::to_string(own->address);
         view.profile = own->profile.name;
@@ -180,6 +171,12 @@ daemon::PrinterView Line::view() {
         view.nozzle = to_string(heard_.machine->nozzle);
         view.error = heard_.machine->error;
     }
+    if (heard_.version) {
+        view.serial_number = heard_.version->serial_number;
+        view.firmware = heard_.version->firmware;
+    }
+    view.total_prints = heard_.total_prints;
+    view.panel_suspended = panel_held_;
     if (const config::ErrorEntry* const entry = view.error.none() ? nullptr : settings_->errors.find(view.error)) {
         view.error_meaning = entry->meaning;
         view.error_advice = entry->advice;

@@ -5,6 +5,8 @@
 #include "config/settings.hpp"
 #include "daemon/job_run.hpp"
 #include "daemon/operations.hpp"
+#include "daemon/preflight.hpp"
+#include "daemon/printer_commands.hpp"
 #include "service/event_log.hpp"
 #include "service/job_facts.hpp"
 #include "service/spool_access.hpp"
@@ -48,7 +50,7 @@ public:
     Line(const Line&) = delete;
     Line& operator=(const Line&) = delete;
 
-    // Any thread
+    // Any thread; those that talk to the printer wait for its answers
     /// For the next start.
     void use(SharedSettings settings);
     /// Begins to arm the job, which has a ticket of this printer that says so. FailureKind::stopped if the line is busy.
@@ -66,6 +68,11 @@ public:
     [[nodiscard]] bool idle() const { return !active(); }
     /// Without its queue.
     [[nodiscard]] daemon::PrinterView view();
+    [[nodiscard]] Result<std::vector<daemon::Finding>> preflight();
+    /// See daemon::acknowledge().
+    [[nodiscard]] Result<void> acknowledge(std::uint32_t error);
+    /// Holds the panel for so long from now, or releases it.
+    [[nodiscard]] Result<void> hold_panel(std::optional<Duration> time);
     [[nodiscard]] const std::string& printer() const { return printer_; }
     [[nodiscard]] const daemon::LineMeters& meters() const { return meters_; }
     [[nodiscard]] const daemon::FrameHistory& frames() const { return frames_; }
@@ -77,10 +84,18 @@ private:
     void event(std::string_view kind, std::optional<spool::JobId> job, std::string message,
                std::optional<RecordNumber> record = {});
 
+    // line_printer.cpp: the printer besides printing
+    [[nodiscard]] Result<daemon::ClientSettings> client_settings() const;
+    [[nodiscard]] std::vector<daemon::Finding> look_at_printer(const daemon::ClientSettings& client,
+                                                               bool may_be_printing);
+    void hear(const daemon::PreflightFacts& facts);
+    void hear(const daemon::RunProgress& progress);
+
     // line_printing.cpp: from the order to its end
     void print(spool::JobId job);
     [[nodiscard]] Result<Ending> print_runs(spool::JobId job);
     [[nodiscard]] Result<daemon::JobRunSettings> run_settings(const spool::Job& job);
+    [[nodiscard]] Result<std::optional<Ending>> check_printer(spool::JobId job, bool may_be_printing);
     [[nodiscard]] Ending run(const JobFacts& facts, RecordRange wanted, const std::optional<daemon::OpenIssue>& open,
                              const daemon::JobRunSettings& settings);
     void watch(daemon::JobRun& run, spool::JobId job);
@@ -97,6 +112,7 @@ private:
     SharedSettings settings_;
     std::optional<spool::JobId> active_; ///< ordered, or under way
     bool begun_ = false;                 ///< the thread has taken the order
+    bool checking_ = false;              ///< preflight
     bool stop_requested_ = false;
     bool closing_ = false;
     daemon::JobRun* run_ = nullptr;      ///< under way
@@ -107,9 +123,14 @@ private:
     struct Heard {
         std::int64_t at_ns = 0; ///< wall time; 0 = never
         std::optional<protocol::MachineStatus> machine;
+        std::optional<protocol::VersionInfo> version;
+        std::optional<std::uint32_t> total_prints;
     };
-    void hear(const daemon::RunProgress& progress);
     Heard heard_;
+
+    std::mutex panel_mutex_; ///< for what follows, also while the printer is talked to
+    std::unique_ptr<daemon::PanelHold> panel_;
+    std::atomic<bool> panel_held_{false};
 
     std::thread thread_;
 };

@@ -40,6 +40,17 @@ RecordRange wanted_records(const Before& before) {
     return before.open ? RecordRange::closed(all.first(), before.open->run_range.last()) : all;
 }
 
+/// The nearest word for what the look at the printer has found.
+OutcomeCode outcome_of(const daemon::Finding& finding) {
+    if (finding.check == "reachable") {
+        return OutcomeCode::unreachable;
+    }
+    if (finding.check == "cover") {
+        return OutcomeCode::cover_open;
+    }
+    return finding.check == "errors" ? OutcomeCode::error_pending : OutcomeCode::not_ready;
+}
+
 } // namespace
 
 void Line::print(spool::JobId job) {
@@ -96,6 +107,9 @@ Result<Ending> Line::print_runs(spool::JobId job) {
     if (*hindrance) {
         return Ending{job, (*hindrance)->outcome, (*hindrance)->detail};
     }
+    if (auto hindered = check_printer(job, before->open.has_value()); !hindered || *hindered) {
+        return hindered ? Result<Ending>{std::move(**hindered)} : hindered.error();
+    }
     Ending ending{job, {.code = OutcomeCode::nothing_to_print, .issued = false}, {}};
     while (true) {
         before = look(services_.access, job);
@@ -127,6 +141,42 @@ Result<Ending> Line::print_runs(spool::JobId job) {
             return ending;
         }
     }
+}
+
+/// The look at the printer before the start; each finding that is not good is told. What stands in the way; absent =
+/// nothing does.
+Result<std::optional<Ending>> Line::check_printer(spool::JobId job, bool may_be_printing) {
+    const auto client = client_settings();
+    if (!client) {
+        return client.error();
+    }
+    {
+        const std::lock_guard lock{mutex_};
+        checking_ = true;
+    }
+    const std::vector<daemon::Finding> findings = look_at_printer(*client, may_be_printing);
+    {
+        const std::lock_guard lock{mutex_};
+        checking_ = false;
+    }
+    std::optional<Ending> ending;
+    for (const daemon::Finding& finding : findings) {
+        const std::string words = finding.words + (finding.advice.empty() ? "" : ". " + finding.advice);
+        switch (finding.severity) {
+        case daemon::Severity::ok:
+            break;
+        case daemon::Severity::warning:
+            event(event_kind::printer_warning, job, words);
+            break;
+        case daemon::Severity::problem:
+            event(event_kind::printer_error, job, words);
+            if (!ending) {
+                ending = Ending{job, {.code = outcome_of(finding), .issued = false}, words};
+            }
+            break;
+        }
+    }
+    return ending;
 }
 
 Ending Line::run(const JobFacts& facts, RecordRange wanted, const std::optional<OpenIssue>& open,
