@@ -39,7 +39,8 @@ struct LineServices {
 struct Ending {
     spool::JobId job{};
     feeder::Outcome outcome;
-    std::string words; ///< why, and what to do
+    std::string words;   ///< why, and what to do
+    bool said = false; ///< all is in the words: those of the outcome are not needed
 };
 
 /// Flow: construct; start() and stop() as the operator wants. Destroying it stops the line and waits for the truth.

@@ -171,7 +171,7 @@ Result<std::optional<Ending>> Line::check_printer(spool::JobId job, bool may_be_
         case daemon::Severity::problem:
             event(event_kind::printer_error, job, words);
             if (!ending) {
-                ending = Ending{job, {.code = outcome_of(finding), .issued = false}, words};
+                ending = Ending{job, {.code = outcome_of(finding), .issued = false}, words, true};
             }
             break;
         }
@@ -250,7 +250,9 @@ bool shows_error(OutcomeCode code) {
 void Line::conclude(const Ending& given) {
     Ending ending = given;
     const std::string detail = ending.words;
-    ending.words = feeder::describe(ending.outcome) + (detail.empty() ? "" : ": " + detail);
+    if (!ending.said) {
+        ending.words = feeder::describe(ending.outcome) + (detail.empty() ? "" : ": " + detail);
+    }
     const auto after = services_.access.write([&](spool::Spool& spool) -> Result<JobFacts> {
         auto facts = read_facts(spool, ending.job);
         if (!facts) {
