@@ -154,8 +154,8 @@ TEST_F(ServiceTest, shouldPrintAgainWhatAnOperatorNamesWithReasonAndName) {
             evidence.push_back(row.entry.evidence);
         }
     }
-    EXPECT_THAT(evidence, ElementsAre(R"({"operator":"anna (uid 1000)","reason":"smudged"})",
-                                      R"({"operator":"anna (uid 1000)","reason":"smudged"})"));
+    EXPECT_THAT(evidence, ElementsAre(R"x({"operator":"anna (uid 1000)","reason":"smudged"})x",
+                                      R"x({"operator":"anna (uid 1000)","reason":"smudged"})x"));
     EXPECT_TRUE(service_->verify_ledger());
     service_.reset();
     std::vector<std::string> expected = serials(1, 10);
@@ -264,7 +264,7 @@ TEST_F(ServiceTest, shouldLetAnOperatorSettleADoubtAndGoOnBehindIt) {
     ASSERT_TRUE(comes_to(job, JobPhase::finished));
     const auto history = service_->history(job, RecordRange::closed(RecordNumber{4}, RecordNumber{5})).value();
     ASSERT_THAT(history, SizeIs(2));
-    EXPECT_THAT(history.front().evidence, HasSubstr(R"("operator":"anna (uid 1000)")"));
+    EXPECT_THAT(history.front().evidence, HasSubstr(R"x("operator":"anna (uid 1000)")x"));
     service_.reset();
     EXPECT_EQ(printer.products(), serials(5, 10));
 }
