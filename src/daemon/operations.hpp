@@ -274,6 +274,8 @@ public:
     [[nodiscard]] virtual Result<std::optional<JobView>> job(spool::JobId id) = 0;
     [[nodiscard]] virtual Result<DoubtView> doubt(spool::JobId id) = 0;
 
+    /// What is printed on records of a job, ascending; those that it does not have are left out. At most 1000 at once.
+    [[nodiscard]] virtual Result<std::vector<DoubtView::Record>> records(spool::JobId id, RecordRange records) = 0;
     /// Records of a job with their fate, ascending, from `first` on, at most `limit` stretches.
     [[nodiscard]] virtual Result<std::vector<spool::HistoryStretch>> history(spool::JobId id, RecordRange records) = 0;
     [[nodiscard]] virtual Result<std::vector<spool::LedgerRow>> ledger(spool::JobId id, std::int64_t after,
@@ -284,12 +286,18 @@ public:
     [[nodiscard]] virtual std::vector<FolderView> folders() = 0;
     /// Those after `after`, ascending; at most `limit`.
     [[nodiscard]] virtual Result<std::vector<EventView>> events(std::uint64_t after, std::size_t limit) = 0;
+    /// The id of the newest event; 0 = there is none.
+    [[nodiscard]] virtual Result<std::uint64_t> last_event() = 0;
     /// Called, on any thread and without blocking, when there are events; the returned number ends it.
     [[nodiscard]] virtual std::uint64_t subscribe(std::function<void()> on_events) = 0;
+    /// When it returns, the subscriber is not called any more.
     virtual void unsubscribe(std::uint64_t subscription) = 0;
     [[nodiscard]] virtual Result<std::vector<AuditView>> audit(std::uint64_t after, std::size_t limit) = 0;
+    /// The id of the newest line; 0 = there is none.
+    [[nodiscard]] virtual Result<std::uint64_t> last_audit() = 0;
 
     // What changes something. Each leaves a line in the audit log, also where it is refused.
+    /// Returns when the file is read to its end, or will not be opened again: an upload is removed then.
     [[nodiscard]] virtual Result<ImportAnswer> import(const Caller& caller, const ImportRequest& request) = 0;
     /// Behind the last of that printer's queue. A job that has printed belongs to its printer.
     [[nodiscard]] virtual Result<void> enqueue(const Caller& caller, spool::JobId id, std::string_view printer) = 0;
@@ -323,6 +331,7 @@ public:
         std::string body;
     };
     [[nodiscard]] virtual Result<std::optional<Remembered>> remembered(const Caller& caller, std::string_view key) = 0;
+    /// Durable at return; replaces what was remembered of this caller and key.
     [[nodiscard]] virtual Result<void> remember(const Caller& caller, std::string_view key,
                                                 const Remembered& answer) = 0;
 };
