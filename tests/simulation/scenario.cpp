@@ -177,7 +177,9 @@ Scenario draw_scenario(std::uint64_t seed, Profile profile) {
         scenario.damage = serial.chance(0.2) ? 1e-5 * static_cast<double>(serial.spread(10, 1000)) : 0;
         scenario.start_under_fill = Random{seed}.fork(5).chance(0.1);
     }
-    draw_counter(scenario, Random{seed}.fork(6));
+    if (profile != Profile::counted) {
+        draw_counter(scenario, Random{seed}.fork(6));
+    }
     return scenario;
 }
 

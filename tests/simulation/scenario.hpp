@@ -101,8 +101,9 @@ struct Scenario {
 
 /// Which family of scenarios.
 enum class Profile {
-    mixed, ///< everything
-    line,  ///< 1 000 prints/s without faults: measures the speed of the simulation
+    mixed,   ///< everything
+    counted, ///< the same, but every printer has its total print counter
+    line,    ///< 1 000 prints/s without faults: measures the speed of the simulation
 };
 
 [[nodiscard]] Scenario draw_scenario(std::uint64_t seed, Profile profile);

@@ -31,7 +31,14 @@ protected:
     struct Run {
         spool::JobId job;
         Store store;
-        std::vector<std::int64_t> pushed_ns{};
+        std::vector<std::int64_t> pushed_ns;
+
+        Run(spool::Spool& spool, spool::JobId id)
+            : job(id)
+            , store(
+                  StoreWork{spool, id,
+                            LedgerKeeper{spool, id, closed(1, records_of_page), "tcp://10.0.0.5:3000", std::nullopt}}) {
+        }
     };
 
     void SetUp() override {
@@ -39,9 +46,7 @@ protected:
         spool_.reset();
         spool_.emplace(spool::Spool::open(directory_ / "spool.db", {steady_ns, disk_.name()}).value());
         for (std::size_t i = 0; i < printers; ++i) {
-            const spool::JobId job = import_job(1);
-            LedgerKeeper keeper{*spool_, job, closed(1, records_of_page), "tcp://10.0.0.5:3000", std::nullopt};
-            runs_.push_back(std::make_unique<Run>(job, Store{StoreWork{*spool_, job, std::move(keeper)}}));
+            runs_.push_back(std::make_unique<Run>(*spool_, import_job(1)));
         }
         disk_.before_change = [this](test::DiskCall call) {
             if (call == test::DiskCall::sync) {
