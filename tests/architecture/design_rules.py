@@ -16,7 +16,7 @@ MAY_USE = {
     "config": {"base", "protocol", "feeder", "link"},
     "daemon": {"base", "protocol", "feeder", "session", "link", "spool", "intake", "config"},
     "api": {"base", "protocol", "link", "spool", "config", "daemon"},
-    "cli": {"base", "protocol", "feeder", "session", "link", "spool", "intake", "config", "daemon"},
+    "cli": {"base", "protocol", "feeder", "session", "link", "spool", "intake", "config", "daemon", "api"},
 }
 
 # Folder -> folder -> the only headers of the second that the first may include: the feeder knows the message types, never bytes.

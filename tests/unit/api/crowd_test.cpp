@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <mutex>
 #include <thread>
 
 namespace linefeed::api {
@@ -106,9 +107,11 @@ TEST_F(CrowdTest, ServesTheOthersAmongTwoHundredClients) {
                     const auto begun = steady_clock::now();
                     const auto reply = client.get(k % 2 == 0 ? "/api/v1/status" : "/api/v1/jobs?limit=2");
                     const std::chrono::duration<double, std::milli> took = steady_clock::now() - begun;
-                    const std::lock_guard lock{mutex};
                     failures += reply ? 0 : 1;
-                    times_ms.push_back(took.count());
+                    {
+                        const std::lock_guard lock{mutex};
+                        times_ms.push_back(took.count());
+                    }
                     std::this_thread::sleep_for(std::chrono::milliseconds{5});
                 }
             });

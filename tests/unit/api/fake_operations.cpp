@@ -256,6 +256,17 @@ Result<std::vector<spool::LedgerRow>> FakeOperations::ledger(spool::JobId id, st
     return rows;
 }
 
+Result<std::vector<DoubtView::Record>> FakeOperations::records(spool::JobId id, RecordRange records) {
+    if (const auto known = check_job(id); !known) {
+        return known.error();
+    }
+    std::vector<DoubtView::Record> found;
+    for (std::uint64_t k = 0; k < records.count().value(); ++k) {
+        found.push_back({records.first() + RecordCount{k}, {"serial " + std::to_string(k), "\xE4"}});
+    }
+    return found;
+}
+
 Result<std::int64_t> FakeOperations::verify_ledger() {
     const std::lock_guard lock{mutex_};
     return failure_ ? Result<std::int64_t>{*failure_} : Result<std::int64_t>{7};
@@ -304,6 +315,10 @@ Result<std::vector<AuditView>> FakeOperations::audit(std::uint64_t after, std::s
         found.push_back(audit_[k]);
     }
     return found;
+}
+
+Result<std::uint64_t> FakeOperations::last_audit() {
+    return std::uint64_t{audit_size()};
 }
 
 Result<ImportAnswer> FakeOperations::import(const Caller& caller, const ImportRequest& request) {

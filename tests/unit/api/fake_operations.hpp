@@ -48,6 +48,7 @@ public:
     Result<daemon::DoubtView> doubt(spool::JobId id) override;
     Result<std::vector<spool::HistoryStretch>> history(spool::JobId id, RecordRange records) override;
     Result<std::vector<spool::LedgerRow>> ledger(spool::JobId id, std::int64_t after, std::size_t limit) override;
+    Result<std::vector<daemon::DoubtView::Record>> records(spool::JobId id, RecordRange records) override;
     Result<std::int64_t> verify_ledger() override;
     std::vector<daemon::FolderView> folders() override;
     Result<std::vector<daemon::EventView>> events(std::uint64_t after, std::size_t limit) override;
@@ -55,6 +56,7 @@ public:
     std::uint64_t subscribe(std::function<void()> on_events) override;
     void unsubscribe(std::uint64_t subscription) override;
     Result<std::vector<daemon::AuditView>> audit(std::uint64_t after, std::size_t limit) override;
+    Result<std::uint64_t> last_audit() override;
     Result<daemon::ImportAnswer> import(const daemon::Caller& caller, const daemon::ImportRequest& request) override;
     Result<void> enqueue(const daemon::Caller& caller, spool::JobId id, std::string_view printer) override;
     Result<void> start(const daemon::Caller& caller, spool::JobId id) override;

@@ -24,8 +24,11 @@ std::string lower_case(std::string_view method) {
 std::vector<YAML::Node> parameters(const YAML::Node& path, const YAML::Node& operation) {
     std::vector<YAML::Node> all;
     for (const YAML::Node& list : {path["parameters"], operation["parameters"]}) {
+        if (!list.IsDefined()) {
+            continue;
+        }
         for (const YAML::Node& parameter : list) {
-            const auto reference = parameter["$ref"].as<std::string>("");
+            const auto reference = parameter["$ref"].IsDefined() ? parameter["$ref"].as<std::string>() : "";
             all.push_back(reference.empty()
                               ? parameter
                               : document()["components"]["parameters"][reference.substr(reference.rfind('/') + 1)]);
@@ -88,8 +91,8 @@ TEST(OpenApi, SaysOfEachRouteWhatTheTableSays) {
         EXPECT_EQ(query, taken);
         EXPECT_EQ(key_required, route.key == Key::none ? std::nullopt : std::optional{route.key == Key::required});
         EXPECT_EQ(operation["requestBody"].IsDefined(), route.body != Body::none);
-        EXPECT_EQ(operation["requestBody"]["required"].as<bool>(false),
-                  route.body == Body::json || route.body == Body::import);
+        const bool required = operation["requestBody"].IsDefined() && operation["requestBody"]["required"].as<bool>();
+        EXPECT_EQ(required, route.body == Body::json || route.body == Body::import);
         for (const auto& response : operation["responses"]) {
             if (response.first.as<std::string>() != "default") {
                 const std::string_view produces = route.produces.substr(0, route.produces.find(';'));

@@ -42,7 +42,7 @@ class Schemas(unittest.TestCase):
         "jobSettle": {"last_printed": "17"}, "import": {"file": "/etc/hostname"},
     }
     QUERIES = {"readyz": "?verbose", "printerFrames": "?error=true", "jobs": "?limit=2&phase=queued,finished,in_doubt",
-               "jobLedger": "?records=5-400&limit=3", "jobLedgerRows": "?limit=3", "events": "?limit=1", "audit": "?limit=2"}
+               "jobLedger": "?records=5-400&limit=3", "jobLedgerRows": "?limit=3", "jobRecords": "?records=3-9&limit=2", "events": "?limit=1", "audit": "?limit=2"}
 
     @classmethod
     def setUpClass(cls):
@@ -146,6 +146,8 @@ class Schemas(unittest.TestCase):
             self.assertEqual([job["id"] for job in walk("/api/v1/jobs?limit=1&printer=line1&phase=queued,in_doubt")], [13, 12])
             self.assertEqual([event["id"] for event in walk("/api/v1/events?limit=1")], [1, 2])
             self.assertEqual([row["sequence"] for row in walk("/api/v1/jobs/12/ledger/rows?limit=3")], [1, 2, 3, 4, 5, 6, 7])
+            self.assertEqual([r["number"] for r in walk("/api/v1/jobs/12/records?records=4996-9999&limit=2")], [4996, 4997, 4998, 4999, 5000])
+            self.assertEqual(walk("/api/v1/jobs/12/records?records=5001"), [])
             stretches = walk("/api/v1/jobs/12/ledger?records=5-44&limit=2")
             self.assertEqual([(s["first"], s["last"]) for s in stretches], [(5, 10), (11, 20), (21, 30), (31, 40), (41, 44)])
 
@@ -191,8 +193,12 @@ class Rights(unittest.TestCase):
     def test_tokens_are_read_again(self):
         with Service(tokens=TOKENS) as service:
             service.tokens_file.write_text("\n".join(TOKENS.splitlines()[:-1]) + "\n")
+            open_before = service.raw()
             self.assertEqual(service.ask("POST", "/api/v1/reload", headers=bearer("operator"), over_socket=False).status, 200)
             self.assertEqual(service.ask("POST", self.CHANGE, headers=bearer("operator"), over_socket=False).problem, "token-unknown")
+            with open_before:
+                open_before.sendall(f"GET /metrics HTTP/1.1\r\nHost: localhost:{service.port}\r\nAuthorization: {bearer('operator')['Authorization']}\r\n\r\n".encode())
+                self.assertEqual(read_answer(open_before)[0], 401)
             service.tokens_file.write_text("nonsense\n")
             answer = service.ask("POST", "/api/v1/reload")
             self.assertEqual(answer.status, 422)
@@ -684,7 +690,7 @@ class Events(unittest.TestCase):
             else:
                 self.fail("no room was made")
             self.assertEqual(service.end(), 0)
-            self.assertEqual(read_all(streams[1][0])[-2:], b"\n\n")
+            self.assertEqual(streams[1][1].read()[-2:], b"\n\n")
             for stream, _ in streams + [(raw, file)]:
                 stream.close()
 
