@@ -13,6 +13,10 @@ constexpr int idle_wait_ms = 1000;
 /// Confirmations are gathered for this long, well below the 50 ms in which they must be durable.
 constexpr auto gather = std::chrono::milliseconds{10};
 constexpr auto checkpoint_interval = std::chrono::seconds{5};
+
+int wait_ms(std::chrono::steady_clock::duration left) {
+    return static_cast<int>(std::chrono::ceil<std::chrono::milliseconds>(left).count());
+}
 } // namespace
 
 StoreThread::StoreThread(spool::Spool& spool)
@@ -159,7 +163,7 @@ void StoreThread::run() {
             checkpoint();
             last_checkpoint = now;
         } else if (!taken) {
-            signal_.wait(wants_commit ? static_cast<int>(gather.count()) : idle_wait_ms);
+            signal_.wait(wants_commit ? wait_ms(last_commit + gather - now) : idle_wait_ms);
         }
         for (Store* store : stores_) {
             store->send_replies();
