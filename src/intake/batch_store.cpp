@@ -1,5 +1,8 @@
 #include "intake/batch_store.hpp"
 
+#include <algorithm>
+#include <filesystem>
+
 namespace linefeed::intake {
 
 Result<std::optional<KnownBatch>> SpoolBatches::find(const spool::JobSpec& spec) {
@@ -18,8 +21,10 @@ Result<std::optional<KnownBatch>> SpoolBatches::find(const spool::JobSpec& spec)
         }
         return std::optional{*earlier ? KnownBatch{std::move(**earlier), false} : KnownBatch{job, true}};
     }
+    const std::filesystem::path folder = std::filesystem::path{spec.source.path}.parent_path();
     for (const spool::Job& job : *jobs) {
-        if (job.spec.layout == spec.layout && job.spec.base == spec.base) {
+        if ((job.spec.layout == spec.layout && job.spec.base == spec.base) ||
+            std::filesystem::path{job.spec.source.path}.parent_path() == folder) {
             return std::optional{KnownBatch{job, false}};
         }
     }
@@ -50,7 +55,9 @@ Result<std::optional<spool::Job>> SpoolBatches::give_way(const spool::Job& job) 
     if (!same) {
         return same.error();
     }
-    if (same->empty() || same->front().id >= job.id) {
+    // Whichever was begun first: imports may overlap, and this one has become ready last.
+    const auto other = std::ranges::find_if(*same, [&](const spool::Job& one) { return one.id != job.id; });
+    if (other == same->end()) {
         return std::optional<spool::Job>{};
     }
     const auto state = spool_.ledger_state(job.id);
@@ -63,7 +70,7 @@ Result<std::optional<spool::Job>> SpoolBatches::give_way(const spool::Job& job) 
     if (auto removed = spool_.remove_job(job.id); !removed) {
         return removed.error();
     }
-    return std::optional{std::move(same->front())};
+    return std::optional{std::move(*other)};
 }
 
 } // namespace linefeed::intake

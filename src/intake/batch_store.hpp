@@ -28,7 +28,9 @@ struct BatchImport {
 class BatchStore {
 public:
     virtual ~BatchStore() = default;
-    /// The job for a file of these bytes (spec.source_sha256), read in the same way or made of this very file.
+    /// The job for a file of these bytes (spec.source_sha256) that was read in the same way, or came out of the same
+    /// folder, however it was read: a change of the layout is no reason to print a batch again. Another folder may read
+    /// the same bytes in another way, for another printer.
     [[nodiscard]] virtual Result<std::optional<KnownBatch>> find(const spool::JobSpec& spec) = 0;
     /// As import_source(). The job becomes ready in one transaction, and not unless options.check_source allows it.
     [[nodiscard]] virtual Result<BatchImport> import(RowSource& source, const spool::JobSpec& spec,
@@ -45,7 +47,7 @@ public:
                                              const ImportOptions& options) override;
 
 private:
-    /// The earlier job with the records of `job`, which is removed then.
+    /// The other job with the records of `job`, which is removed then unless some of it was granted to a run.
     [[nodiscard]] Result<std::optional<spool::Job>> give_way(const spool::Job& job);
 
     spool::Spool& spool_;
