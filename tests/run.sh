@@ -102,7 +102,7 @@ production() { # a simulation on each core, with seeds of its own
 
 mkdir -p build
 groups=(build test lint)
-[[ $long -eq 0 ]] || groups+=(fuzz)
+[[ $long -eq 0 ]] || groups+=(fuzz package)
 stage "packages" deploy/dependencies.sh "${groups[@]}" || finish
 stage "build" build_release || finish
 [[ $long -eq 0 ]] || export LINEFEED_LONG_TESTS=1
