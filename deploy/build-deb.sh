@@ -29,8 +29,13 @@ if [[ $# -gt 0 ]]; then
         cat deploy/debian/changelog
     } > debian/changelog
 fi
+# debhelper moves HOME, and would leave the compiler's cache behind.
+if command -v ccache > /dev/null; then
+    CCACHE_DIR=$(ccache --get-config cache_dir)
+    export CCACHE_DIR
+fi
 dpkg-buildpackage --build=binary --no-sign --jobs="$(nproc)" > "$result/build.log" 2>&1 || {
-    tail -n 40 "$result/build.log" >&2
+    tail -n 12 "$result/build.log" >&2
     fail "the package cannot be built, see $result/build.log"
 }
 rm -rf "$tree"
