@@ -52,6 +52,18 @@ install_file() { # PACKAGE: as an operator does, from a file
     in_root apt-get -q -o Dpkg::Use-Pty=0 install --yes --no-install-recommends /tmp/linefeed.deb < /dev/null > "$work/apt.log" 2>&1 ||
         { cat "$work/apt.log" >&2; fail "$1 cannot be installed"; }
 }
+get() { # PACKAGE: from the mirror
+    in_root apt-get -q -o Dpkg::Use-Pty=0 install --yes --no-install-recommends "$1" < /dev/null > "$work/apt.log" 2>&1 ||
+        { cat "$work/apt.log" >&2; fail "$1 cannot be installed"; }
+}
+give_up() { # remove|purge
+    in_root apt-get -q -o Dpkg::Use-Pty=0 "$1" --yes linefeed > "$work/apt.log" 2>&1 || { cat "$work/apt.log" >&2; fail "apt-get $1"; }
+}
+told_systemd() { # what was to be done with a unit since the last question
+    local log=$work/root/tmp/systemctl.log
+    [[ ! -e $log ]] || sed -nE "/(start|stop|kill).* $1/{s/^(--?[a-z]+ )*//;p}" "$log" | xargs
+    rm -f "$log"
+}
 left() { # every file of the package or of the service that is there
     (cd "$work/root" && find . -xdev -iname '*linefeed*' -not -path './proc/*' -not -path './tmp/*' | sort)
 }
@@ -88,12 +100,28 @@ step "a clean Debian 12"
 debootstrap --variant=minbase bookworm "$work/root" "$mirror" > "$work/debootstrap.log" 2>&1 ||
     { tail "$work/debootstrap.log" >&2; fail "debootstrap has failed"; }
 mount -t proc proc "$work/root/proc"
-printf '#!/bin/sh\nexit 101\n' > "$work/root/usr/sbin/policy-rc.d"
+printf '#!/bin/sh\ncase "$1" in linefeed*) exit 0 ;; *) exit 101 ;; esac\n' > "$work/root/usr/sbin/policy-rc.d"
 chmod 0755 "$work/root/usr/sbin/policy-rc.d"
 in_root apt-get -q update > "$work/apt.log" 2>&1 || { cat "$work/apt.log" >&2; fail "apt-get update"; }
+get systemd
+# As on a machine that runs systemd, which only takes down what it is told to do. Files are enabled as ever.
+mkdir -p "$work/root/run/systemd/system"
+mv "$work/root/usr/bin/systemctl" "$work/root/usr/bin/systemctl.real"
+cat > "$work/root/usr/bin/systemctl" <<'SH'
+#!/bin/sh
+case " $* " in
+    *" --root"*) exec systemctl.real "$@" ;;
+    *" is-enabled "*) echo enabled ;;
+    *" is-active "*) test -e /tmp/active ;;
+    *) echo "$*" >> /tmp/systemctl.log ;;
+esac
+SH
+chmod 0755 "$work/root/usr/bin/systemctl"
 
 step "install"
 install_file "$package"
+told=$(told_systemd linefeedd)
+[[ $told == "start linefeedd.service" ]] || fail "an installation tells systemd: $told"
 [[ $(in_root dpkg --verify linefeed) == "" ]] || fail "dpkg --verify"
 in_root id -nG linefeed | grep -qw dialout || fail "the user linefeed is not there, or not in the group dialout"
 [[ $(in_root getent passwd linefeed | cut -d : -f 7) == */nologin ]] || fail "the user linefeed may log in"
@@ -108,7 +136,7 @@ for program in linefeed linefeed-sim linefeed-backup linefeed-restore; do
 done
 as_service linefeed check-config /etc/linefeed/linefeed.yaml > /dev/null || fail "the configuration as installed"
 
-in_root apt-get -q -o Dpkg::Use-Pty=0 install --yes --no-install-recommends udev < /dev/null > "$work/apt.log" 2>&1 || { cat "$work/apt.log" >&2; fail "udev"; }
+get udev
 mount -t sysfs -o ro sysfs "$work/root/sys"
 rules=$(in_root udevadm test --action=add /sys/class/tty/tty0 2>&1)
 umount "$work/root/sys"
@@ -167,8 +195,12 @@ jobs+=("$line")
 wait_for_prints 200
 
 step "upgrade in mid-job"
+touch "$work/root/tmp/active"
 install_file "$work/upgrade.deb"
+grep "^linefeed:" "$work/apt.log" || fail "the upgrade does not say that the service goes on"
 [[ $(in_root dpkg-query --show --showformat='${Version}' linefeed) == *+upgrade1 ]] || fail "the upgrade is not installed"
+told=$(told_systemd linefeedd)
+[[ $told == "" ]] || fail "an upgrade tells systemd: $told"
 [[ $(tape_lines) -lt $records ]] || fail "the job was over before the upgrade"
 kill -0 "$line" 2> /dev/null || fail "the upgrade has ended what printed"
 in_root linefeed-backup --spool /var/lib/linefeed/spool.db || fail "a backup in mid-job"
@@ -182,13 +214,15 @@ as_service linefeed ledger 1 --spool /var/lib/linefeed/spool.db --verify
 
 step "remove"
 cp "$work/root/var/lib/linefeed/spool.db" "$work/spool.db"
-in_root apt-get -q -o Dpkg::Use-Pty=0 remove --yes linefeed > "$work/apt.log" 2>&1 || { cat "$work/apt.log" >&2; fail "apt-get remove"; }
+give_up remove
+told=$(told_systemd linefeedd)
+[[ $told == "stop linefeedd.service" ]] || fail "removal tells systemd: $told"
 [[ ! -e $work/root/usr/bin/linefeed && -e $work/root/etc/linefeed/linefeed.yaml ]] || fail "remove takes the programs and nothing else"
 cmp "$work/spool.db" "$work/root/var/lib/linefeed/spool.db" || fail "remove has touched the spool"
 
 step "purge"
 rm -r "$work/root/srv/linefeed" "$work/root/run/linefeed" # the plant's, and systemd's
-in_root apt-get -q -o Dpkg::Use-Pty=0 purge --yes linefeed > "$work/apt.log" 2>&1 || { cat "$work/apt.log" >&2; fail "apt-get purge"; }
+give_up purge
 grep linefeed: "$work/apt.log"
 last=$(cd "$work/root" && find ./var/backups/linefeed -name spool.db)
 cmp "$work/spool.db" "$work/root/$last" || fail "the ledger is gone"
@@ -198,7 +232,7 @@ rm -r "$work/root/var/backups/linefeed"
 step "install and purge, nothing printed"
 install_file "$package"
 in_root install -d -o linefeed -g linefeed -m 0750 /var/lib/linefeed
-in_root apt-get -q -o Dpkg::Use-Pty=0 purge --yes linefeed > "$work/apt.log" 2>&1 || { cat "$work/apt.log" >&2; fail "apt-get purge"; }
+give_up purge
 expect_left ""
 
 printf '\ntest-deb.sh: OK (%s s)\n' "$SECONDS"
