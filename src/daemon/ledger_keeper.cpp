@@ -72,7 +72,8 @@ Result<std::optional<OpenIssue>> find_open_issue(spool::Spool& spool, spool::Job
     }
     issue.facts.last = issue.run_range.last();
     if (const auto& ended = (*last_run)->ended) {
-        issue.facts.broken_off = parse_broken_off(ended->entry.evidence).value_or(RecordNumber{});
+        const RecordNumber broken_off = parse_broken_off(ended->entry.evidence).value_or(RecordNumber{});
+        issue.facts.broken_off = issue.records.contains(broken_off) ? broken_off : RecordNumber{};
     }
     return std::optional<OpenIssue>{issue};
 }
