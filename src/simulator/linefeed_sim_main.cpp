@@ -1,15 +1,20 @@
 // linefeed-sim: a JET printer with a conveyor, for training, tests and acceptance without hardware. Reads the command
 // line, runs the simulator, tells the summary. Exit codes: 0 done, 1 cannot run, 2 usage.
+#include "protocol/command_help.hpp"
+#include "protocol/decimal.hpp"
 #include "simulator/fleet.hpp"
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <charconv>
 #include <exception>
 #include <fstream>
 #include <iostream>
+#include <iterator>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace {
@@ -23,7 +28,6 @@ constexpr unsigned max_printers = 256;
 constexpr double max_rate = 100000;
 constexpr double max_milliseconds = 3600000;
 constexpr double max_jitter_percent = 100;
-constexpr std::uint32_t largest_error_code = 0x01FFFFFF;
 
 /// The options as they are typed.
 struct Options {
@@ -32,6 +36,11 @@ struct Options {
     std::string charset = "latin1";
     std::vector<std::string> habits;
     std::vector<std::string> errors_at_print;
+    std::vector<std::string> faults;
+    std::string scenario;
+    std::vector<std::string> counters;
+    std::vector<std::string> input_functions;
+    bool commands = false;
     std::vector<std::uint64_t> stops_at_print, covers_at_print, cuts_at_print, mutes_at_print, power_cycles_at_print;
     std::uint64_t products = 0;
     std::uint32_t exit_when_idle = 0;
@@ -89,6 +98,18 @@ void add_printer_options(CLI::App& app, Options& typed, PrinterSettings& printer
     add_ms("--nozzle-opening-ms", typed.nozzle_opening_ms, "From !NO to open");
     add_ms("--initialising-ms", typed.initialising_ms, "From !PO to ready");
     add_ms("--job-loading-ms", typed.job_loading_ms, "How long loading a job takes");
+    app.add_option("--firmware", printer.firmware,
+                   "Version in ?VS, e.g. V60.0.1.17; what the manual ties to versions follows it")
+        ->group(group);
+    app.add_option("--counter", typed.counters, "START-END or START-ENDxREPETITIONS: a counter of the job, repeatable")
+        ->group(group);
+    app.add_option("--input-function", typed.input_functions,
+                   "CONTACT=NUMBER: what an input does, numbered as in =IC, e.g. X4.9=3; repeatable")
+        ->group(group);
+    app.add_option("--block-errors", printer.block_errors.percent,
+                   "Percent of the file blocks, each way, that are damaged or asked for again")
+        ->check(CLI::Range(0U, 99U))
+        ->group(group);
     app.add_option("--serial-number", printer.serial_number, "In ?VS")->group(group);
     app.add_option("--total-prints", printer.total_prints, "Prints of the printer's life so far")->group(group);
     app.add_option("--job", printer.job, "Name of the loaded job with path")->group(group);
@@ -119,7 +140,7 @@ void add_line_options(CLI::App& app, Options& typed, ConveyorSettings& conveyor)
     app.add_option("--jitter", conveyor.jitter_percent, "Percent of the period, each way")
         ->check(between(0, max_jitter_percent))
         ->group(group);
-    app.add_option("--seed", conveyor.seed, "Of the jitter")->group(group);
+    app.add_option("--seed", conveyor.seed, "Of the jitter and of the block errors")->group(group);
     app.add_option("--products", typed.products,
                    "Stop the conveyor after so many PrintGos that found the printer printing")
         ->check(CLI::PositiveNumber)
@@ -132,16 +153,20 @@ void add_line_options(CLI::App& app, Options& typed, ConveyorSettings& conveyor)
 }
 
 void add_fault_options(CLI::App& app, Options& typed) {
-    const std::string group = "Faults, when so many products have been printed (repeatable)";
+    const std::string group = "Faults";
+    app.add_option("--fault", typed.faults, std::string{"\"WHEN WHAT\", repeatable. "}.append(fault_help()))
+        ->group(group);
+    app.add_option("--scenario", typed.scenario, "File of such faults, one a line; # begins a comment")->group(group);
     const auto add = [&](const char* name, std::vector<std::uint64_t>& prints, const char* description) {
         app.add_option(name, prints, description)->check(CLI::PositiveNumber)->group(group);
     };
-    add("--stop-at-print", typed.stops_at_print, "The operator stops the printing");
-    add("--cover-open-at-print", typed.covers_at_print, "The cover is opened");
-    add("--cut-at-print", typed.cuts_at_print, "All connections are closed");
-    add("--mute-at-print", typed.mutes_at_print, "From now on nothing is answered");
-    add("--power-cycle-at-print", typed.power_cycles_at_print, "Mains off and on");
-    app.add_option("--error-at-print", typed.errors_at_print, "N:CODE, the error stops the printing")->group(group);
+    add("--stop-at-print", typed.stops_at_print, "When so many are printed, the operator stops the printing");
+    add("--cover-open-at-print", typed.covers_at_print, "… the cover is opened");
+    add("--cut-at-print", typed.cuts_at_print, "… all connections are closed");
+    add("--mute-at-print", typed.mutes_at_print, "… and from then on nothing is answered");
+    add("--power-cycle-at-print", typed.power_cycles_at_print, "… mains off and on");
+    app.add_option("--error-at-print", typed.errors_at_print, "N:CODE, the error stops the printing then")
+        ->group(group);
 }
 
 void add_run_options(CLI::App& app, Options& typed, SimulatorSettings& settings) {
@@ -179,27 +204,98 @@ void set_address(SimulatorSettings& settings, const std::string& listen) {
     }
 }
 
-Fault error_fault(const std::string& typed) {
-    Fault fault{Fault::Kind::error, 0, 0};
-    const char* end = typed.data() + typed.size();
-    const auto print = std::from_chars(typed.data(), end, fault.at_print);
-    if (print.ec == std::errc{} && print.ptr != end && *print.ptr == ':') {
-        const auto code = std::from_chars(print.ptr + 1, end, fault.code);
-        if (code.ec == std::errc{} && code.ptr == end && fault.at_print > 0 && fault.code > 0 &&
-            fault.code <= largest_error_code) {
-            return fault;
-        }
+Fault wanted_fault(const std::string& option, const std::string& text) {
+    auto fault = parse_fault(text);
+    if (!fault) {
+        refuse(option, fault.error().message);
     }
-    refuse("--error-at-print", "N:CODE expected, e.g. 100:12113, not \"" + typed + "\"");
+    return *std::move(fault);
 }
 
-void set_printer(PrinterSettings& printer, const Options& typed, const ConveyorSettings& conveyor,
-                 bool print_ms_typed) {
+/// `N:CODE`.
+Fault error_fault(const std::string& typed) {
+    const std::size_t colon = typed.find(':');
+    auto fault = colon == std::string::npos
+                     ? Result<Fault>{Failure{}}
+                     : parse_fault("print " + typed.substr(0, colon) + " error " + typed.substr(colon + 1));
+    if (!fault) {
+        refuse("--error-at-print", "N:CODE expected, e.g. 100:12113, not \"" + typed + "\"");
+    }
+    return *std::move(fault);
+}
+
+void add_scenario(std::vector<Fault>& faults, const std::string& path) {
+    std::ifstream file{path};
+    const std::string text{std::istreambuf_iterator<char>{file}, {}};
+    if (!file.is_open() || file.bad()) {
+        refuse("--scenario", "cannot read " + path);
+    }
+    auto scenario = parse_scenario(text);
+    if (!scenario) {
+        refuse("--scenario", path + ", " + scenario.error().message);
+    }
+    faults.insert(faults.end(), std::make_move_iterator(scenario->begin()), std::make_move_iterator(scenario->end()));
+}
+
+/// `START-END` or `START-ENDxREPETITIONS`.
+CounterDefinition counter_of(const std::string& typed) {
+    const std::size_t dash = typed.find('-');
+    const std::size_t cross = std::min(typed.find('x'), typed.size());
+    if (dash != std::string::npos && dash < cross) {
+        const std::string_view text{typed};
+        const auto start = protocol::read_decimal<std::uint64_t>(text.substr(0, dash));
+        const auto end = protocol::read_decimal<std::uint64_t>(text.substr(dash + 1, cross - dash - 1));
+        const auto repetitions =
+            cross == typed.size() ? std::optional{0U} : protocol::read_decimal<std::uint32_t>(text.substr(cross + 1));
+        if (start && end && repetitions && *start <= protocol::max_counter_value &&
+            *end <= protocol::max_counter_value) {
+            return {*start, *end, *repetitions};
+        }
+    }
+    refuse("--counter", "START-END or START-ENDxREPETITIONS expected, e.g. 1-9999x2, not \"" + typed + "\"");
+}
+
+/// `CONTACT=NUMBER`.
+void set_input_function(PrinterSettings& printer, const std::string& typed) {
+    constexpr std::uint32_t last_function = 12;
+    const std::size_t equals = std::min(typed.find('='), typed.size());
+    const auto input = protocol::input_from_contact(std::string_view{typed}.substr(0, equals));
+    const auto number =
+        protocol::read_decimal<std::uint32_t>(std::string_view{typed}.substr(std::min(equals + 1, typed.size())));
+    if (!input || static_cast<std::size_t>(*input) >= printer.profile.configured_inputs() || !number ||
+        *number > last_function) {
+        refuse("--input-function", "CONTACT=NUMBER expected, a contact that the printer has and a number of 0 to 12, "
+                                   "e.g. X4.9=3, not \"" +
+                                       typed + "\"");
+    }
+    printer.inputs.functions[static_cast<std::size_t>(*input)] = protocol::InputFunction{*number};
+}
+
+void set_profile(PrinterSettings& printer, const Options& typed) {
     const auto profile = protocol::profile_by_name(typed.profile);
     if (!profile) {
         refuse("--profile", "jet3, jet3up, jet2neo or jet2neo-v71 expected, not \"" + typed.profile + "\"");
     }
     printer.profile = *profile;
+    if (!printer.firmware.empty()) {
+        const auto of_version = protocol::profile_for(versions_of(printer).type, printer.firmware);
+        if (!of_version || printer.firmware.find_first_of("\t\r\n^\\") != std::string::npos) {
+            refuse("--firmware", "a version expected, e.g. V60.0.1.17, not \"" + printer.firmware + "\"");
+        }
+        printer.profile = *of_version;
+    }
+}
+
+void set_printer(PrinterSettings& printer, const Options& typed, const ConveyorSettings& conveyor,
+                 bool print_ms_typed) {
+    set_profile(printer, typed);
+    printer.block_errors.seed = conveyor.seed;
+    for (const std::string& text : typed.counters) {
+        printer.counters.push_back(counter_of(text));
+    }
+    for (const std::string& text : typed.input_functions) {
+        set_input_function(printer, text);
+    }
     for (const std::string& name : typed.habits) {
         if (!set_habit(printer.habits, name)) {
             refuse("--habit", "there is no habit \"" + name + "\"; see --help");
@@ -231,6 +327,28 @@ void set_printer(PrinterSettings& printer, const Options& typed, const ConveyorS
     }
 }
 
+void set_faults(std::vector<Fault>& faults, const Options& typed) {
+    if (!typed.scenario.empty()) {
+        add_scenario(faults, typed.scenario);
+    }
+    for (const std::string& text : typed.faults) {
+        faults.push_back(wanted_fault("--fault", text));
+    }
+    for (const std::string& text : typed.errors_at_print) {
+        faults.push_back(error_fault(text));
+    }
+    const auto add = [&faults](const Deed& deed, const std::vector<std::uint64_t>& prints) {
+        for (const std::uint64_t print : prints) {
+            faults.push_back({{Moment::Unit::print, print, {}}, deed});
+        }
+    };
+    add(PressKey{protocol::Action::stop_print}, typed.stops_at_print);
+    add(MoveCover{true}, typed.covers_at_print);
+    add(CutConnections{}, typed.cuts_at_print);
+    add(Mute{true}, typed.mutes_at_print);
+    add(PowerCycle{}, typed.power_cycles_at_print);
+}
+
 void set_everything(SimulatorSettings& settings, const Options& typed, bool print_ms_typed) {
     set_address(settings, typed.listen);
     set_printer(settings.printer, typed, settings.conveyor, print_ms_typed);
@@ -252,19 +370,7 @@ void set_everything(SimulatorSettings& settings, const Options& typed, bool prin
     if (typed.exit_when_idle > 0) {
         settings.exit_when_idle = std::chrono::seconds{typed.exit_when_idle};
     }
-    const auto add = [&settings](Fault::Kind kind, const std::vector<std::uint64_t>& prints) {
-        for (const std::uint64_t print : prints) {
-            settings.faults.push_back({kind, print, 0});
-        }
-    };
-    add(Fault::Kind::operator_stop, typed.stops_at_print);
-    add(Fault::Kind::cover_open, typed.covers_at_print);
-    add(Fault::Kind::cut_connections, typed.cuts_at_print);
-    add(Fault::Kind::mute, typed.mutes_at_print);
-    add(Fault::Kind::power_cycle, typed.power_cycles_at_print);
-    for (const std::string& text : typed.errors_at_print) {
-        settings.faults.push_back(error_fault(text));
-    }
+    set_faults(settings.faults, typed);
 }
 
 int fail(const std::string& message) {
@@ -324,6 +430,7 @@ int main(int argc, char** argv) {
     add_line_options(app, typed, settings.conveyor);
     add_printer_options(app, typed, settings.printer);
     add_fault_options(app, typed);
+    app.add_flag("--commands", typed.commands, "List every command that the printer knows, as Markdown, and end");
     app.set_version_flag("--version", "linefeed-sim " LINEFEED_VERSION);
     try {
         app.parse(argc, argv);
@@ -334,6 +441,10 @@ int main(int argc, char** argv) {
         }
         std::cerr << "linefeed-sim: " << error.what() << '\n';
         return exit_usage;
+    }
+    if (typed.commands) {
+        std::cout << protocol::commands_as_markdown();
+        return 0;
     }
     try {
         const bool json_wanted = app.count("--summary-json") > 0;

@@ -3,6 +3,7 @@
 
 #include "simulator/steady_instant.hpp"
 
+#include <algorithm>
 #include <csignal>
 #include <utility>
 
@@ -76,8 +77,10 @@ void Simulator::start() {
             shut_down();
         }
     });
+    started_ = steady_now();
     wait_for_idleness();
-    move_conveyor(steady_now());
+    wait_for_fault();
+    move_conveyor(started_);
 }
 
 Result<void> Simulator::finish() {
@@ -92,6 +95,7 @@ void Simulator::shut_down() {
     conveyor_timer_.cancel();
     model_timer_.cancel();
     idle_timer_.cancel();
+    fault_timer_.cancel();
     signals_.cancel();
     io_.stop();
 }
@@ -102,6 +106,8 @@ void Simulator::on_connected(ConnectionId) {
 }
 
 void Simulator::on_frame(ConnectionId connection, const protocol::Frame& frame, Instant now) {
+    ++frames_;
+    cause_due_faults(now); // before the frame that is counted takes effect
     const bool was_empty = model_.fifo().records() == 0;
     model_.receive(connection, frame, now);
     if (lead_times_ && was_empty && model_.fifo().records() > 0) {
@@ -164,11 +170,23 @@ void Simulator::record(const Printed& print) {
     }
 }
 
+bool Simulator::is_due(const Moment& moment, Instant now) const {
+    switch (moment.unit) {
+    case Moment::Unit::print:
+        return moment.count <= statistics_.prints;
+    case Moment::Unit::frame:
+        return moment.count <= frames_;
+    case Moment::Unit::time:
+        return moment.time <= now - started_;
+    }
+    return false;
+}
+
 void Simulator::cause_due_faults(Instant now) {
     auto& faults = settings_.faults;
     for (std::size_t i = 0; i < faults.size();) {
-        if (faults[i].at_print <= statistics_.prints) {
-            const Fault due = faults[i];
+        if (is_due(faults[i].when, now)) {
+            const Deed due = std::move(faults[i].what);
             faults.erase(faults.begin() + static_cast<std::ptrdiff_t>(i));
             cause(due, now);
         } else {
@@ -177,27 +195,48 @@ void Simulator::cause_due_faults(Instant now) {
     }
 }
 
-void Simulator::cause(const Fault& fault, Instant now) {
-    switch (fault.kind) {
-    case Fault::Kind::operator_stop:
-        model_.press(protocol::Action::stop_print, now);
-        return;
-    case Fault::Kind::error:
-        model_.raise_error(fault.code, now);
-        return;
-    case Fault::Kind::cover_open:
-        model_.open_cover(now);
-        return;
-    case Fault::Kind::cut_connections:
-        server_.close_connections();
-        return;
-    case Fault::Kind::mute:
-        muted_ = true;
-        return;
-    case Fault::Kind::power_cycle:
-        model_.power_cycle(now);
+void Simulator::cause(const Deed& deed, Instant now) {
+    struct Visitor {
+        Simulator& simulator;
+        Instant now;
+
+        void operator()(const PressKey& key) const { simulator.model_.press(key.action, now); }
+        void operator()(const RaiseError& error) const { simulator.model_.raise_error(error.code, now); }
+        void operator()(const MoveCover& cover) const {
+            cover.open ? simulator.model_.open_cover(now) : simulator.model_.close_cover(now);
+        }
+        void operator()(const LoadJob& job) const { simulator.model_.load_job(job.path, now); }
+        void operator()(const SetInput& input) const { simulator.model_.set_input(input.input, input.on, now); }
+        void operator()(const MoveStick& stick) const { simulator.model_.set_stick(stick.present); }
+        void operator()(const CutConnections&) const { simulator.server_.close_connections(); }
+        void operator()(const Mute& mute) const { simulator.muted_ = mute.muted; }
+        void operator()(const PowerCycle&) const { simulator.model_.power_cycle(now); }
+        void operator()(const ExpectTrouble& trouble) const { simulator.model_.expect(trouble.trouble, trouble.times); }
+    };
+    std::visit(Visitor{*this, now}, deed);
+}
+
+/// For the next fault that has a time; the others come with what they count.
+void Simulator::wait_for_fault() {
+    std::optional<Duration> next;
+    for (const Fault& fault : settings_.faults) {
+        if (fault.when.unit == Moment::Unit::time) {
+            next = next ? std::min(*next, fault.when.time) : fault.when.time;
+        }
+    }
+    if (!next) {
         return;
     }
+    fault_timer_.expires_at(to_steady(started_ + *next));
+    fault_timer_.async_wait([this](const error_code& error) {
+        if (error) {
+            return;
+        }
+        const Instant now = steady_now();
+        cause_due_faults(now);
+        carry_out(now);
+        wait_for_fault();
+    });
 }
 
 void Simulator::move_conveyor(Instant now) {
