@@ -3,6 +3,7 @@
 #include "simulator/sim_options.hpp"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <fstream>
 #include <iterator>
@@ -59,8 +60,12 @@ Fault error_fault(const std::string& typed) {
 }
 
 void add_scenario(std::vector<Fault>& faults, const std::string& path) {
-    std::ifstream file{path};
-    const std::string text{std::istreambuf_iterator<char>{file}, {}};
+    std::ifstream file{path, std::ios::binary};
+    std::string text;
+    std::array<char, 4096> buffer{};
+    while (file.read(buffer.data(), buffer.size()) || file.gcount() > 0) {
+        text.append(buffer.data(), static_cast<std::size_t>(file.gcount()));
+    }
     if (!file.is_open() || file.bad()) {
         refuse("--scenario", "cannot read " + path);
     }
