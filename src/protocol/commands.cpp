@@ -33,7 +33,7 @@ constexpr std::size_t place_of(std::string_view code) {
 /// What is known of the names of one enumeration.
 template <std::size_t Size>
 struct Names {
-    std::array<const Command*, Size> rows{};                        ///< by enumerator
+    std::array<std::uint8_t, Size> rows{};                          ///< of the table, by enumerator
     std::array<std::uint8_t, letters * letters_and_digits> index{}; ///< by the place of the code: every answer is
                                                                     ///< looked up on its way to the refill
 };
@@ -42,10 +42,12 @@ struct Names {
 template <std::size_t Size>
 constexpr Names<Size> names_of(Group group, Group other) {
     Names<Size> names;
+    names.rows.fill(no_command);
     names.index.fill(no_command);
-    for (const Command& row : command_table) {
-        if ((row.group == group || row.group == other) && (row.group == group || names.rows[row.index] == nullptr)) {
-            names.rows[row.index] = &row;
+    for (std::size_t place = 0; place < command_table.size(); ++place) {
+        const Command& row = command_table[place];
+        if (row.group == group || (row.group == other && names.rows[row.index] == no_command)) {
+            names.rows[row.index] = static_cast<std::uint8_t>(place);
             names.index[place_of(row.code)] = row.index;
         }
     }
@@ -59,11 +61,16 @@ constexpr auto files = names_of<static_cast<std::size_t>(FileCommand::FA) + 1>(G
 /// Each enumerator has its row, and each code leads to one.
 template <std::size_t Size>
 constexpr bool complete(const Names<Size>& names) {
-    return std::ranges::count(names.rows, nullptr) == 0 && std::ranges::count_if(names.index, [](std::uint8_t index) {
-                                                               return index != no_command;
-                                                           }) == static_cast<std::ptrdiff_t>(Size);
+    return std::ranges::count(names.rows, no_command) == 0 &&
+           std::ranges::count_if(names.index, [](std::uint8_t index) { return index != no_command; }) ==
+               static_cast<std::ptrdiff_t>(Size);
 }
 static_assert(complete(actions) && complete(parameters) && complete(files));
+
+template <typename Name, std::size_t Size>
+const Command& row_of(const Names<Size>& names, Name name) {
+    return command_table[names.rows[static_cast<std::size_t>(name)]];
+}
 
 template <typename Name, std::size_t Size>
 std::optional<Name> find(const Names<Size>& names, std::string_view code) {
@@ -75,27 +82,27 @@ std::optional<Name> find(const Names<Size>& names, std::string_view code) {
 } // namespace
 
 std::string_view code(Action action) {
-    return actions.rows[static_cast<std::size_t>(action)]->code;
+    return row_of(actions, action).code;
 }
 
 std::string_view code(Parameter parameter) {
-    return parameters.rows[static_cast<std::size_t>(parameter)]->code;
+    return row_of(parameters, parameter).code;
 }
 
 std::string_view code(FileCommand command) {
-    return files.rows[static_cast<std::size_t>(command)]->code;
+    return row_of(files, command).code;
 }
 
 std::string_view description(Action action) {
-    return actions.rows[static_cast<std::size_t>(action)]->description;
+    return row_of(actions, action).description;
 }
 
 std::string_view description(Parameter parameter) {
-    return parameters.rows[static_cast<std::size_t>(parameter)]->description;
+    return row_of(parameters, parameter).description;
 }
 
 std::string_view description(FileCommand command) {
-    return files.rows[static_cast<std::size_t>(command)]->description;
+    return row_of(files, command).description;
 }
 
 std::optional<Action> action_from_code(std::string_view code) {

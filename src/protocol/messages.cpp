@@ -60,7 +60,6 @@ constexpr auto parameter_readers = [] {
     set(Parameter::ET, read_special<read_extern_text>);
     return readers;
 }();
-static_assert(std::ranges::count(parameter_readers, nullptr) == 2);
 
 /// How each file command is read, by FileCommand.
 constexpr std::array<Read, static_cast<std::size_t>(FileCommand::FA) + 1> file_readers{

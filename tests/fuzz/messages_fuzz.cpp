@@ -27,6 +27,9 @@ void check_round_trip(const Message& message, EscapeMode escapes) {
     if (escapes == EscapeMode::none && written.find('^', 1) != std::string::npos) {
         return; // firmware without escapes cannot be sent a ^
     }
+    if (written.ends_with("\n\r")) {
+        return; // a LF directly before the CR belongs to the end of the frame
+    }
     FrameDecoder decoder{escapes};
     DecodeResult result;
     const Frame* const frame = only_frame(decoder, written, result);
