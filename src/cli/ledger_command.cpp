@@ -2,7 +2,7 @@
 
 #include "cli/print_report.hpp"
 #include "cli/progress_view.hpp"
-#include "cli/record_text.hpp"
+#include "daemon/record_text.hpp"
 #include "cli/wall_time.hpp"
 #include "spool/ledger_history.hpp"
 #include "spool/spool.hpp"
@@ -43,7 +43,7 @@ public:
     RecordTexts(spool::Spool& spool, const spool::Job& job)
         : spool_(spool)
         , job_(job)
-        , format_(record_format(job)) {}
+        , format_(daemon::record_format(job)) {}
 
     Result<std::vector<std::string>> fields(RecordNumber number) {
         if (!page_ || !page_->range().contains(number)) {
@@ -53,13 +53,13 @@ public:
             }
             page_ = std::move(*page);
         }
-        return record_fields(*page_, number, format_);
+        return daemon::record_fields(*page_, number, format_);
     }
 
 private:
     spool::Spool& spool_;
     const spool::Job& job_;
-    RecordFormat format_;
+    daemon::RecordFormat format_;
     std::optional<RecordPage> page_;
 };
 
@@ -115,7 +115,7 @@ Result<void> show_records(spool::Spool& spool, const spool::Job& job, RecordRang
             if (!fields) {
                 return fields.error();
             }
-            const std::string text = joined(*fields, "\t");
+            const std::string text = daemon::joined(*fields, "\t");
             if (format == "json") {
                 std::cout << dump(record_json(number, *fields, stretch), -1) << '\n';
             } else if (format == "csv") {

@@ -3,7 +3,8 @@
 #include "cli/drop_command.hpp"
 #include "cli/ledger_command.hpp"
 #include "cli/print_command.hpp"
-#include "cli/record_ranges.hpp"
+#include "cli/token_command.hpp"
+#include "daemon/record_ranges.hpp"
 
 #include <CLI/CLI.hpp>
 
@@ -16,10 +17,11 @@ namespace {
 using linefeed::cli::CheckConfigOptions;
 using linefeed::cli::DropOptions;
 using linefeed::cli::ExitCode;
-using linefeed::cli::InDoubtPolicy;
+using linefeed::daemon::InDoubtPolicy;
 using linefeed::cli::JobsOptions;
 using linefeed::cli::LedgerOptions;
 using linefeed::cli::PrintOptions;
+using linefeed::cli::TokenOptions;
 using linefeed::intake::Layout;
 
 std::filesystem::path default_spool() {
@@ -270,6 +272,18 @@ CLI::App& add_ledger(CLI::App& app, LedgerOptions& options, RawLedgerOptions& ra
     return ledger;
 }
 
+CLI::App& add_token(CLI::App& app, TokenOptions& options, std::string& output) {
+    CLI::App& token = *app.add_subcommand("token", "Tokens for programs that use the service over TCP");
+    token.require_subcommand(1);
+    CLI::App& made = *token.add_subcommand("new", "Make a token, and the line for http.tokens_file");
+    made.add_option("NAME", options.name, "Whose it is: letters, digits and ._-; stands in the audit log")->required();
+    made.add_option("--role", options.role, "viewer (looks at everything) or operator (and changes things)")
+        ->capture_default_str()
+        ->check(CLI::IsMember({"viewer", "operator"}));
+    add_output(made, output);
+    return token;
+}
+
 CLI::App& add_check_config(CLI::App& app, CheckConfigOptions& options, std::string& output) {
     CLI::App& check = *app.add_subcommand("check-config",
                                           "Check the configuration of the service and show the settings that it gives");
@@ -302,11 +316,14 @@ ExitCode run(int argc, char** argv) {
     RawLedgerOptions raw_ledger;
     RawDropOptions raw_drop;
     std::string jobs_output{"text"};
+    TokenOptions token;
+    std::string token_output{"text"};
     std::string check_config_output{"text"};
     add_print(app, print, raw_print);
     const CLI::App& drop_command = add_drop(app, drop, raw_drop);
     const CLI::App& jobs_command = add_jobs(app, jobs, jobs_output);
     const CLI::App& ledger_command = add_ledger(app, ledger, raw_ledger);
+    const CLI::App& token_command = add_token(app, token, token_output);
     const CLI::App& check_config_command = add_check_config(app, check_config, check_config_output);
     try {
         app.parse(argc, argv);
@@ -327,12 +344,16 @@ ExitCode run(int argc, char** argv) {
     if (ledger_command.parsed()) {
         ledger.json = raw_ledger.output == "json";
         if (!raw_ledger.records.empty()) {
-            ledger.records = linefeed::cli::parse_record_range(raw_ledger.records);
+            ledger.records = linefeed::daemon::parse_record_range(raw_ledger.records);
             if (!ledger.records) {
                 return usage_error("--records " + raw_ledger.records + ": expected N or N-M");
             }
         }
         return linefeed::cli::run_ledger(ledger);
+    }
+    if (token_command.parsed()) {
+        token.json = token_output == "json";
+        return linefeed::cli::run_token(token);
     }
     if (check_config_command.parsed()) {
         check_config.json = check_config_output == "json";

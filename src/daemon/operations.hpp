@@ -131,12 +131,13 @@ struct Finding {
     std::string advice; ///< what to do; empty if ok
 };
 
-/// A frame of a conversation.
+/// A frame of a conversation; or consecutive mail records that went out together; or bytes that are no frame.
 struct FrameView {
     std::int64_t time_ns = 0; ///< wall time
     bool sent = false;        ///< by linefeed
-    std::string bytes;        ///< raw; at most 128 of them
-    std::uint32_t size = 0;   ///< of the whole frame
+    std::string bytes;        ///< raw; at most 128 of them; of several records, the first one's; none: no frame
+    std::uint32_t size = 0;   ///< of the whole frame with its CR, or of all the records
+    RecordRange records{};    ///< not empty: the numbers of the mail records, all of which this entry stands for
 };
 
 struct EventView {
@@ -179,10 +180,10 @@ struct FolderView {
 };
 
 struct ImportRequest {
-    std::filesystem::path file; ///< absolute; readable by the service
-    std::string name;           ///< shown instead of the file's own, e.g. of an upload; empty = the file's
-    std::string layout;         ///< name in the settings; empty = the default layout
-    std::string printer;        ///< queue it there; empty = no queue
+    std::filesystem::path file{}; ///< absolute; readable by the service
+    std::string name{};           ///< shown instead of the file's own, e.g. of an upload; empty = the file's
+    std::string layout{};         ///< name in the settings; empty = the default layout
+    std::string printer{};        ///< queue it there; empty = no queue
     bool autostart = false;     ///< may start by itself if its printer's queue does so too
     bool again = false;         ///< import the same content once more, as a new job
 };
@@ -193,22 +194,22 @@ struct ImportAnswer {
     std::string report;     ///< JSON of intake::ImportReport: the rows that are bad
 };
 
-/// What an operator knows about records in doubt: exactly one is given. See cli/operator_word.hpp for what is refused.
+/// What an operator knows about records in doubt: exactly one is given. See daemon/operator_word.hpp for what is refused.
 struct SettleRequest {
     enum class Policy { skip, reprint };
-    std::optional<Policy> policy;
-    std::optional<std::string> last_printed; ///< number or text of the record on the last product
-    std::optional<std::string> printed;      ///< "N-M,N" or "none"
+    std::optional<Policy> policy{};
+    std::optional<std::string> last_printed{}; ///< number or text of the record on the last product
+    std::optional<std::string> printed{};      ///< "N-M,N" or "none"
 };
 
 struct ReprintRequest {
-    std::string records; ///< "N-M,N"
-    std::string reason;  ///< not empty
+    std::string records{}; ///< "N-M,N"
+    std::string reason{};  ///< not empty
 };
 
 struct JobFilter {
-    std::string printer;          ///< empty = all
-    std::vector<JobPhase> phases; ///< empty = all
+    std::string printer{};          ///< empty = all
+    std::vector<JobPhase> phases{}; ///< empty = all
     spool::JobId after{};         ///< newest first: those older than this one; 0 = from the newest
     std::size_t limit = 100;      ///< 1…1000
 };
@@ -273,6 +274,8 @@ public:
     [[nodiscard]] virtual Result<std::optional<JobView>> job(spool::JobId id) = 0;
     [[nodiscard]] virtual Result<DoubtView> doubt(spool::JobId id) = 0;
 
+    /// What is printed on records of a job, ascending; those that it does not have are left out. At most 1000 at once.
+    [[nodiscard]] virtual Result<std::vector<DoubtView::Record>> records(spool::JobId id, RecordRange records) = 0;
     /// Records of a job with their fate, ascending, from `first` on, at most `limit` stretches.
     [[nodiscard]] virtual Result<std::vector<spool::HistoryStretch>> history(spool::JobId id, RecordRange records) = 0;
     [[nodiscard]] virtual Result<std::vector<spool::LedgerRow>> ledger(spool::JobId id, std::int64_t after,
@@ -283,12 +286,18 @@ public:
     [[nodiscard]] virtual std::vector<FolderView> folders() = 0;
     /// Those after `after`, ascending; at most `limit`.
     [[nodiscard]] virtual Result<std::vector<EventView>> events(std::uint64_t after, std::size_t limit) = 0;
+    /// The id of the newest event; 0 = there is none.
+    [[nodiscard]] virtual Result<std::uint64_t> last_event() = 0;
     /// Called, on any thread and without blocking, when there are events; the returned number ends it.
     [[nodiscard]] virtual std::uint64_t subscribe(std::function<void()> on_events) = 0;
+    /// When it returns, the subscriber is not called any more.
     virtual void unsubscribe(std::uint64_t subscription) = 0;
     [[nodiscard]] virtual Result<std::vector<AuditView>> audit(std::uint64_t after, std::size_t limit) = 0;
+    /// The id of the newest line; 0 = there is none.
+    [[nodiscard]] virtual Result<std::uint64_t> last_audit() = 0;
 
     // What changes something. Each leaves a line in the audit log, also where it is refused.
+    /// Returns when the file is read to its end, or will not be opened again: an upload is removed then.
     [[nodiscard]] virtual Result<ImportAnswer> import(const Caller& caller, const ImportRequest& request) = 0;
     /// Behind the last of that printer's queue. A job that has printed belongs to its printer.
     [[nodiscard]] virtual Result<void> enqueue(const Caller& caller, spool::JobId id, std::string_view printer) = 0;
@@ -322,6 +331,7 @@ public:
         std::string body;
     };
     [[nodiscard]] virtual Result<std::optional<Remembered>> remembered(const Caller& caller, std::string_view key) = 0;
+    /// Durable at return; replaces what was remembered of this caller and key.
     [[nodiscard]] virtual Result<void> remember(const Caller& caller, std::string_view key,
                                                 const Remembered& answer) = 0;
 };

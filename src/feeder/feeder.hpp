@@ -13,17 +13,27 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 namespace linefeed::feeder {
+
+/// Which error numbers of the printer stop the line, whatever window it shows them in.
+struct StoppingErrors {
+    std::vector<std::uint32_t> numbers{}; ///< bits 24…0 of the error, ascending
+    bool all_others = false;              ///< not these, but all others
+
+    [[nodiscard]] bool contain(const protocol::PrinterError& error) const;
+};
 
 /// What the operator allows, and the beat.
 struct FeederSettings {
     PacingSettings pacing;
     /// `!NO` when the nozzle is closed, instead of refusing.
     bool open_nozzle = false;
-    /// Error codes that may be acknowledged before a start besides those of mailing, whose truth the ledger knows by
-    /// then.
+    /// Error codes that may be acknowledged: while it prints, and before a start besides those of mailing, whose truth
+    /// the ledger knows by then.
     BoundedList<std::uint32_t, 16> acknowledge;
+    StoppingErrors stop_on; ///< besides those that the printer shows as errors
     Duration status_interval = std::chrono::milliseconds{500}; ///< `?RS` while printing
     Duration retry_interval = std::chrono::milliseconds{20};   ///< between inquiries while waiting for a state
     /// From the first fill to `!GO`: the first product may come at once, and its record must lie in the FIFO 3 ms
@@ -115,7 +125,9 @@ public:
     [[nodiscard]] Phase phase() const { return phase_; }
     [[nodiscard]] const Refill& refill() const { return refill_; }
     [[nodiscard]] double rate() const { return pacing_.rate(); }
+    /// As last reported.
     [[nodiscard]] const protocol::MailStatus& mail() const { return mail_; }
+    [[nodiscard]] const protocol::MachineStatus& machine() const { return status_; }
 
 private:
     enum class StopPoint {
@@ -139,6 +151,7 @@ private:
     void forget_oldest_mail();
     [[nodiscard]] bool asks_version_again(Instant now, Actions& out);
     void time_identity(Instant now);
+    void counted(std::optional<std::uint32_t> total, Instant now, Actions& out);
     void counters_lost(Instant now, Actions& out);
     [[nodiscard]] bool waits_for_mail() const;
     [[nodiscard]] bool waits_for_status() const;
@@ -163,7 +176,9 @@ private:
     void go(Instant now, Actions& out);
     void start_mail(Instant now, Actions& out);
     void start_answered(Instant now, Actions& out);
+    [[nodiscard]] bool is_allowed(const protocol::PrinterError& error) const;
     [[nodiscard]] bool may_acknowledge(const protocol::PrinterError& error) const;
+    [[nodiscard]] bool stops(const protocol::PrinterError& error) const;
 
     // feeder_takeover.cpp: found printing the earlier run
     [[nodiscard]] bool may_take_over() const;
@@ -177,6 +192,7 @@ private:
 
     // feeder_printing.cpp: reports, refills and the stop point
     void print_status(Instant now, Actions& out);
+    void print_error(Instant now, Actions& out);
     void print_mail(Instant now, Actions& out);
     [[nodiscard]] bool follow(Instant now, Actions& out);
     void poll_on(Instant now);
@@ -187,7 +203,8 @@ private:
     };
     [[nodiscard]] Report judge_report();
     void note_unfinished();
-    void watch_for_missing();
+    void note_restart();
+    void watch_for_missing(Instant now, Actions& out);
     void doubt_number();
     [[nodiscard]] bool take_report(Instant now, Actions& out);
     void confirm_reported(Actions& out);
@@ -251,9 +268,12 @@ private:
         int under_way = 0;           ///< with this one
         RecordNumber sent_through{}; ///< before it
     };
-    std::array<MailAsked, 64> mail_asked_{}; ///< ring of the inquiries under way
-    RecordNumber sent_before_inquiry_;       ///< the one that was answered last
-    RecordNumber surely_received_;           ///< sent before the inquiry before: an answer may be so old
+    static constexpr int max_mail_asked = 64;
+    /// With more under way no proof is asked for, which takes two: half is left for the beat.
+    static constexpr int max_mail_before_proof = max_mail_asked / 2 - 1;
+    std::array<MailAsked, max_mail_asked> mail_asked_{}; ///< ring of the inquiries under way
+    RecordNumber sent_before_inquiry_;                   ///< the one that was answered last
+    RecordNumber surely_received_;                       ///< sent before the inquiry before: an answer may be so old
     std::size_t mail_oldest_ = 0;
     int mail_outstanding_ = 0;
     int counters_outstanding_ = 0;
@@ -278,6 +298,10 @@ private:
     bool left_over_passed_ = false; ///< the printer has reported another number since
     /// So many more records than were sent are in the printer by the last answer; absent: it fitted.
     std::optional<std::uint64_t> odd_excess_;
+    /// The last number that can come from what was in the printer by the last answer while the stop point stood.
+    std::uint64_t held_through_ = 0;
+    bool missing_ = false;             ///< records, by that answer
+    RecordNumber said_before_;         ///< surely printed by the answer before, taken by itself
     std::uint64_t excess_of_fill_ = 0; ///< 1: its firmware counts the loaded record, too
     std::optional<std::uint32_t> total_before_;
     StopPoint stop_point_ = StopPoint::unset;

@@ -78,12 +78,26 @@ void Feeder::check_ready(Instant now, Actions& out) {
     check_errors(now, out);
 }
 
-bool Feeder::may_acknowledge(const protocol::PrinterError& error) const {
+bool StoppingErrors::contain(const protocol::PrinterError& error) const {
+    const bool listed = std::ranges::binary_search(numbers, error.code()) ||
+                        std::ranges::binary_search(numbers, error.code_without_bit_24());
+    return listed != all_others;
+}
+
+bool Feeder::is_allowed(const protocol::PrinterError& error) const {
     const auto allowed = [this](std::uint32_t error_code) {
         return std::find(settings_.acknowledge.begin(), settings_.acknowledge.end(), error_code) !=
                settings_.acknowledge.end();
     };
-    return is_mailing_error(error) || allowed(error.code()) || allowed(error.code_without_bit_24());
+    return allowed(error.code()) || allowed(error.code_without_bit_24());
+}
+
+bool Feeder::may_acknowledge(const protocol::PrinterError& error) const {
+    return is_mailing_error(error) || is_allowed(error);
+}
+
+bool Feeder::stops(const protocol::PrinterError& error) const {
+    return error.display() == protocol::ErrorDisplay::error || settings_.stop_on.contain(error);
 }
 
 void Feeder::check_errors(Instant now, Actions& out) {
@@ -98,7 +112,7 @@ void Feeder::check_errors(Instant now, Actions& out) {
             ask(Parameter::RS, now, out);
             return;
         }
-        if (status_.error.display() == protocol::ErrorDisplay::error) {
+        if (stops(status_.error)) {
             end(OutcomeCode::error_pending, out);
             return;
         }
@@ -205,7 +219,8 @@ void Feeder::verify(Instant now, Actions& out) {
         ask_later(Parameter::SM, now);
         return;
     }
-    if (mail_.entries + std::uint64_t{2} < sent) { // one less may be a way to count
+    const std::uint64_t way_to_count = total_before_ ? 1 : 0; // one less may be one: the counter will tell
+    if (mail_.entries + std::uint64_t{1} + way_to_count < sent) {
         begin_stop(OutcomeCode::stopped_at_printer, now, out);
         return;
     }
@@ -215,6 +230,7 @@ void Feeder::verify(Instant now, Actions& out) {
         return;
     }
     excess_of_fill_ = excess;
+    held_through_ = refill_.sent_through().value();
     if (!as_expected) {
         out.push_back(Notice{NoticeCode::entries_differ, {}});
         doubt_number(); // a stop, or a damaged line, may have cost a part of the fill
@@ -261,6 +277,10 @@ void Feeder::start_answered(Instant now, Actions& out) {
     if (!status_.error.none() && status_.error.raw != error_noticed_) {
         if (status_.error.display() == protocol::ErrorDisplay::error || is_mailing_error(status_.error)) {
             begin_judging(now, out); // stopped already: by an error, or behind the last record of a short run
+            return;
+        }
+        if (stops(status_.error)) {
+            begin_stop(OutcomeCode::printer_error, now, out);
             return;
         }
         out.push_back(Notice{NoticeCode::printer_warning, status_.error});

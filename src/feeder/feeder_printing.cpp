@@ -34,11 +34,26 @@ void Feeder::print_status(Instant now, Actions& out) {
         begin_stop(OutcomeCode::impossible_report, now, out); // by our credit there was room
         return;
     }
-    if (phase_ != Phase::printing || status_.error.none() || status_.error.raw == error_noticed_) {
+    if (phase_ == Phase::printing) {
+        print_error(now, out);
+    }
+}
+
+/// Each error once, until another comes or it was acknowledged. What mailing raises is never acknowledged while records
+/// are under way: it tells what has become of them.
+void Feeder::print_error(Instant now, Actions& out) {
+    if (status_.error.none() && acknowledged_ != 0) {
+        error_noticed_ = acknowledged_ = 0; // it may come again
+    }
+    if (status_.error.none() || status_.error.raw == error_noticed_) {
         return;
     }
     error_noticed_ = status_.error.raw;
-    if (status_.error.display() == protocol::ErrorDisplay::error) {
+    if (is_allowed(status_.error) && !is_mailing_error(status_.error)) {
+        acknowledged_ = status_.error.raw;
+        out.push_back(Notice{NoticeCode::error_acknowledged, status_.error});
+        out.push_back(Command{protocol::Action::acknowledge_errors});
+    } else if (stops(status_.error)) {
         begin_stop(OutcomeCode::printer_error, now, out);
     } else {
         out.push_back(Notice{NoticeCode::printer_warning, status_.error});
@@ -59,8 +74,8 @@ bool Feeder::follow(Instant now, Actions& out) {
     if (!take_report(now, out)) {
         return false;
     }
-    watch_for_missing();
     pacing_.printed(refill_.printed_through() - refill_.range().first().previous(), now);
+    watch_for_missing(now, out);
     if (phase_ == Phase::printing) {
         stop_move_ == StopMove::none ? insist_on_stop_point(out) : follow_stop_point(now, out);
     }
@@ -125,7 +140,10 @@ bool Feeder::take_report(Instant now, Actions& out) {
     if (pacing_.leaps(refill_.printed_through() - refill_.range().first().previous(), now)) {
         doubt_number(); // another client may have flushed the FIFO: no stop point shows that
     }
-    reported_through_ = finished ? printed : std::max(reported_through_, printed.previous());
+    const RecordNumber said = finished ? printed : printed.previous();
+    // Without a counter to bear it out, one damaged answer must not prove anything.
+    reported_through_ = std::max(reported_through_, total_before_ ? said : std::min(said, said_before_));
+    said_before_ = said;
     confirm_reported(out);
     return true;
 }
@@ -143,11 +161,17 @@ void Feeder::confirm_reported(Actions& out) {
 }
 
 /// Fewer records are in the printer than it surely received: a serial line has lost some, or another client has flushed
-/// the FIFO.
-void Feeder::watch_for_missing() {
+/// the FIFO. The counter will tell whether it prints on behind them; without one it must not come so far.
+void Feeder::watch_for_missing(Instant now, Actions& out) {
     const std::uint64_t held = refill_.printed_through().value() + mail_.entries + std::uint64_t{1};
-    if (held < surely_received_.value()) {
+    const bool missing_before = missing_;
+    held_through_ = std::min<std::uint64_t>(held, refill_.sent_through().value() + (marker_sent_ ? 1 : 0));
+    missing_ = held < surely_received_.value();
+    if (missing_) {
         doubt_number();
+    }
+    if (missing_ && missing_before && !total_before_) { // not just a damaged answer
+        begin_stop(OutcomeCode::stopped_at_printer, now, out);
     }
 }
 
@@ -157,7 +181,7 @@ void Feeder::doubt_number() {
 
 void Feeder::ask_for_proof(Instant now, Actions& out) {
     const bool wanted = reported_through_ > confirmed_through_ && counter_proof_.wants_count(now);
-    if (wanted && counters_outstanding_ == 0 && mail_outstanding_ < Pacing::max_inquiries) {
+    if (wanted && counters_outstanding_ == 0 && mail_outstanding_ <= max_mail_before_proof) {
         ask(Parameter::CC, now, out);
         ask(Parameter::SM, now, out);
         ask(Parameter::SM, now, out);
@@ -214,6 +238,7 @@ bool Feeder::stop_point_vanished(Instant now, Actions& out) {
         return false;
     }
     note_unfinished();
+    note_restart();
     if (!suspected_since_) {
         suspected_since_ = now;
         ask(Parameter::RS, now, out);
@@ -224,7 +249,7 @@ bool Feeder::stop_point_vanished(Instant now, Actions& out) {
 /// The stop point has vanished, and the printer says that it prints: it has been started again, or takes its time to
 /// stop.
 void Feeder::stop_suspected(Instant now, Actions& out) {
-    if (stop_point_ == StopPoint::kept_idle) {
+    if (stop_point_ == StopPoint::kept_idle && total_before_) { // otherwise nothing else would show that it was a stop
         stop_point_ = StopPoint::unset; // this firmware keeps it only when it is set after the start
         stop_move_ = StopMove::none;
         old_stop_point_.reset();

@@ -28,12 +28,25 @@ struct BatchImport {
 class BatchStore {
 public:
     virtual ~BatchStore() = default;
-    /// The job for a file of these bytes (spec.source_sha256), read in the same way or made of this very file.
+    /// The job for a file of these bytes (spec.source_sha256) that was read in the same way, or came out of the same
+    /// folder, however it was read: a change of the layout is no reason to print a batch again. Another folder may read
+    /// the same bytes in another way, for another printer.
     [[nodiscard]] virtual Result<std::optional<KnownBatch>> find(const spool::JobSpec& spec) = 0;
     /// As import_source(). The job becomes ready in one transaction, and not unless options.check_source allows it.
     [[nodiscard]] virtual Result<BatchImport> import(RowSource& source, const spool::JobSpec& spec,
                                                      const ImportOptions& options) = 0;
 };
+
+/// The job for a file of these bytes, see BatchStore::find(). A job that gives way to an earlier one is not removed yet:
+/// `gives_way` = it.
+struct FoundBatch {
+    std::optional<KnownBatch> known;
+    std::optional<spool::JobId> gives_way;
+};
+[[nodiscard]] Result<FoundBatch> find_batch(spool::Spool& spool, const spool::JobSpec& spec);
+/// The other job with the records of `job`, which has to go then; absent = it stays. Whoever decides so begins to remove
+/// it before anybody else asks: two of a kind would otherwise give way to each other.
+[[nodiscard]] Result<std::optional<spool::Job>> earlier_job(spool::Spool& spool, const spool::Job& job);
 
 /// For whoever owns the spool. The spool must outlive it.
 class SpoolBatches final : public BatchStore {
@@ -45,9 +58,6 @@ public:
                                              const ImportOptions& options) override;
 
 private:
-    /// The earlier job with the records of `job`, which is removed then.
-    [[nodiscard]] Result<std::optional<spool::Job>> give_way(const spool::Job& job);
-
     spool::Spool& spool_;
 };
 

@@ -179,7 +179,7 @@ void append_message(std::string& out, const FileBlock& block) {
 }
 
 void append_message(std::string& out, const ExternText& text, EscapeMode escapes) {
-    LINEFEED_ASSERT(text.text.find('\r') == std::string::npos);
+    LINEFEED_ASSERT(text.text.size() <= max_extern_text && text.text.find('\r') == std::string::npos);
     append_head(out, Group::parameter, code(Parameter::ET));
     append_escaped(out, text.text, escapes);
     out.push_back('\r');

@@ -21,6 +21,8 @@ public:
     /// The next parameter as it came; std::nullopt if it is empty or there is none.
     [[nodiscard]] std::optional<std::string_view> text();
 
+    /// The same without blanks around it; empty if there is none.
+    [[nodiscard]] std::string_view trimmed();
     /// The next parameter as a decimal of at most `largest`, blanks around it ignored. `what` names it in problem(),
     /// e.g. "a record number".
     [[nodiscard]] std::optional<std::uint32_t> optional_number(std::string_view what,
@@ -47,7 +49,6 @@ public:
     [[nodiscard]] std::string problem() const;
 
 private:
-    [[nodiscard]] std::string_view trimmed();
     void complain(std::string_view what, std::string_view value);
 
     std::optional<std::string_view> rest_;

@@ -53,9 +53,10 @@ struct JobName {
     friend bool operator==(const JobName&, const JobName&) = default;
 };
 
-/// `=ET`: the extern text, which may contain graphics (graphic.hpp). The printer takes max_extern_text bytes.
+/// `=ET`: the extern text, which may contain graphics (graphic.hpp). The printer takes max_extern_text bytes, in
+/// 20…40 ms.
 struct ExternText {
-    std::string text{}; ///< escapes undone, NUL shown as a blank; TABs belong to it
+    std::string text{}; ///< up to max_extern_text; escapes undone, NUL shown as a blank; TABs belong to it
     friend bool operator==(const ExternText&, const ExternText&) = default;
 };
 inline constexpr std::size_t max_extern_text = 2048;

@@ -105,10 +105,7 @@ JobCounters read_job_counters(ParameterReader& in) {
 CounterReset read_counter_reset(ParameterReader& in) {
     CounterReset reset;
     reset.counter = in.number("a counter id");
-    std::string_view text = in.text().value_or(std::string_view{});
-    while (text.ends_with(' ')) {
-        text.remove_suffix(1);
-    }
+    const std::string_view text = in.trimmed();
     if (text.empty() || text == "-1") {
         return reset;
     }
@@ -128,10 +125,7 @@ EventListBlock read_event_list(ParameterReader& in) {
 }
 
 WysiwygLine read_wysiwyg_line(ParameterReader& in) {
-    std::string_view text = in.text().value_or(std::string_view{});
-    while (text.ends_with(' ')) {
-        text.remove_suffix(1);
-    }
+    const std::string_view text = in.trimmed();
     auto bytes = read_nibbles(text);
     if (!bytes || bytes->size() > max_wysiwyg_line) {
         in.refuse("up to 60 nibbles", text);

@@ -9,7 +9,7 @@ namespace linefeed::simulator {
 namespace {
 
 constexpr std::uint64_t bytes_per_kbyte = 1024;
-constexpr std::uint64_t flash_kbyte = 24576; ///< with the files that are there from the beginning left aside
+constexpr std::uint64_t free_at_first = 24576 * bytes_per_kbyte;
 constexpr std::size_t no_file = SIZE_MAX;
 
 /// Protocol, section 8: the files of the manual's examples, in their order.
@@ -104,6 +104,7 @@ FileSystem::FileSystem(const protocol::Profile& profile) {
     for (const std::string_view name : fonts) {
         files_.push_back({directories_[1], std::string{name}, font_content(name)});
     }
+    flash_capacity_ = flash_bytes() + free_at_first;
 }
 
 FileSystem::Place FileSystem::place_of(std::string_view path) {
@@ -184,7 +185,7 @@ bool FileSystem::write(std::string_view path, std::string bytes) {
     const std::size_t index = find(path);
     const std::uint64_t replaced = index == no_file ? 0 : files_[index].bytes.size();
     const bool on_flash = folder->starts_with("FFSDISK");
-    if (on_flash && flash_bytes() - replaced + bytes.size() > flash_kbyte * bytes_per_kbyte) {
+    if (on_flash && flash_bytes() - replaced + bytes.size() > flash_capacity_) {
         return false;
     }
     if (index == no_file) {
@@ -204,19 +205,16 @@ bool FileSystem::remove(std::string_view path) {
     return true;
 }
 
-/// What users have put onto the flash: the files of the manual are not counted.
 std::uint64_t FileSystem::flash_bytes() const {
     std::uint64_t bytes = 0;
     for (const File& file : files_) {
-        const bool shipped =
-            std::ranges::find(jobs, file.name) != jobs.end() || std::ranges::find(fonts, file.name) != fonts.end();
-        bytes += file.directory.starts_with("FFSDISK") && !shipped ? file.bytes.size() : 0;
+        bytes += file.directory.starts_with("FFSDISK") ? file.bytes.size() : 0;
     }
     return bytes;
 }
 
 std::uint32_t FileSystem::free_kbyte() const {
-    return static_cast<std::uint32_t>(flash_kbyte - (flash_bytes() + bytes_per_kbyte - 1) / bytes_per_kbyte);
+    return static_cast<std::uint32_t>((flash_capacity_ - flash_bytes()) / bytes_per_kbyte);
 }
 
 } // namespace linefeed::simulator

@@ -59,6 +59,7 @@ private:
 
     std::vector<std::string> directories_; ///< in the order of the manual
     std::vector<File> files_;              ///< in the order in which they were made
+    std::uint64_t flash_capacity_ = 0;     ///< bytes
     bool stick_present_ = true;
 };
 

@@ -18,13 +18,11 @@ constexpr std::uint32_t bits_per_byte = 8;
 /// Strokes with room for the highest graphic, bit 0 on top.
 using Strokes = std::vector<std::uint32_t>;
 
-void append_text(Strokes& strokes, std::string_view text) {
-    for (const char c : text) {
-        const auto place = static_cast<std::size_t>(static_cast<unsigned char>(c - dot_font::first_character));
-        const auto& shape = place < dot_font::characters ? dot_font::strokes[place] : dot_font::box;
-        strokes.insert(strokes.end(), shape.begin(), shape.end());
-        strokes.push_back(0);
-    }
+void append_character(Strokes& strokes, char c) {
+    const auto place = static_cast<std::size_t>(static_cast<unsigned char>(c - dot_font::first_character));
+    const auto& shape = place < dot_font::characters ? dot_font::strokes[place] : dot_font::box;
+    strokes.insert(strokes.end(), shape.begin(), shape.end());
+    strokes.push_back(0);
 }
 
 void append_graphic(Strokes& strokes, const protocol::Graphic& graphic) {
@@ -37,6 +35,24 @@ void append_graphic(Strokes& strokes, const protocol::Graphic& graphic) {
     }
 }
 
+/// A text with graphics anywhere in it. Returns how high it is.
+std::uint32_t append_field(Strokes& strokes, std::string_view field) {
+    std::uint32_t height = dot_font::height;
+    while (!field.empty()) {
+        const std::size_t end = field.front() == '(' ? field.find(')') : std::string_view::npos;
+        const auto graphic =
+            end == std::string_view::npos ? std::nullopt : protocol::parse_graphic(field.substr(0, end + 1));
+        if (graphic) {
+            height = std::max(height, graphic->height);
+            append_graphic(strokes, *graphic);
+        } else {
+            append_character(strokes, field.front());
+        }
+        field.remove_prefix(graphic ? end + 1 : 1);
+    }
+    return height;
+}
+
 } // namespace
 
 protocol::WysiwygImage draw(std::string_view text, std::uint32_t job_id, std::uint32_t first) {
@@ -47,12 +63,7 @@ protocol::WysiwygImage draw(std::string_view text, std::uint32_t job_id, std::ui
         const std::size_t end = rest->find('\t');
         const std::string_view field = rest->substr(0, end);
         rest = end == std::string_view::npos ? std::nullopt : std::optional{rest->substr(end + 1)};
-        if (const auto graphic = protocol::parse_graphic(field)) {
-            height = std::max(height, graphic->height);
-            append_graphic(strokes, *graphic);
-        } else {
-            append_text(strokes, field);
-        }
+        height = std::max(height, append_field(strokes, field));
         if (rest) {
             strokes.insert(strokes.end(), field_distance, 0);
         }

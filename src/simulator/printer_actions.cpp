@@ -169,12 +169,13 @@ bool PrinterModel::output(std::size_t number) const {
         return machine_ == MachineState::ready_to_print || printing();
     case OutputSignal::print_active:
         return print_ends_.has_value();
+    case OutputSignal::power_fail: // inverted
+        return true;
     case OutputSignal::disabled:
     case OutputSignal::refill_warning: // the tanks are full
     case OutputSignal::product_counter_end:
     case OutputSignal::print_go:
     case OutputSignal::encoder:
-    case OutputSignal::power_fail:
     case OutputSignal::camera_trigger:
     case OutputSignal::counter_overflow:
     case OutputSignal::camera_error:

@@ -57,7 +57,11 @@ protocol::MailStatus PrinterModel::mail_status_answer() {
 }
 
 protocol::Counters PrinterModel::counters() const {
-    return {product_counter_, stop_after_, total_prints_};
+    protocol::Counters counters{product_counter_, stop_after_, total_prints_};
+    if (settings_.habits.no_total_counter) {
+        counters.total.reset();
+    }
+    return counters;
 }
 
 std::uint32_t PrinterModel::speed_shown(std::uint32_t dm_per_min) const {

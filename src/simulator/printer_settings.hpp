@@ -41,13 +41,14 @@ struct Habits {
     bool abort_print_on_stop = false;         ///< a stop breaks off the running print, which stays "not finished"
     bool escaped_paths = false;               ///< `\` of paths is doubled in answers, as the escape rule demands
     bool missing_jobs_refused = false;        ///< `=JL` with a path where no file is leaves the job as it is
+    bool no_total_counter = false;            ///< `=CC` ends before the total print counter
     LineEnd line_end = LineEnd::cr;
 
     friend bool operator==(const Habits&, const Habits&) = default;
 };
 
 /// The names that set_habit() knows, in the order of help texts.
-inline constexpr std::array<std::string_view, 14> habit_names{"ignore-stop-at",
+inline constexpr std::array<std::string_view, 15> habit_names{"ignore-stop-at",
                                                               "stop-at-only-while-printing",
                                                               "stale-mail-status",
                                                               "sixth-value",
@@ -59,6 +60,7 @@ inline constexpr std::array<std::string_view, 14> habit_names{"ignore-stop-at",
                                                               "abort-print-on-stop",
                                                               "escaped-paths",
                                                               "missing-jobs-refused",
+                                                              "no-total-counter",
                                                               "crlf",
                                                               "lfcr"};
 

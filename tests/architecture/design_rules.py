@@ -15,7 +15,10 @@ MAY_USE = {
     "simulator": {"base", "protocol"},
     "config": {"base", "protocol", "feeder", "link"},
     "daemon": {"base", "protocol", "feeder", "session", "link", "spool", "intake", "config"},
-    "cli": {"base", "protocol", "feeder", "session", "link", "spool", "intake", "config", "daemon"},
+    "api": {"base", "protocol", "link", "spool", "config", "daemon"},
+    "service": {"base", "protocol", "feeder", "session", "link", "spool", "intake", "config", "daemon"},
+    "cli": {"base", "protocol", "feeder", "session", "link", "spool", "intake", "config", "daemon", "api"},
+    "linefeedd": {"base", "spool", "config", "daemon", "service", "api", "cli"},
 }
 
 # Folder -> folder -> the only headers of the second that the first may include: the feeder knows the message types, never bytes.
@@ -58,9 +61,11 @@ IMPURE_CODE = {
 # Outside library -> the only folders that may include it.
 LIBRARY_FOLDERS = {
     r"sqlite3(ext)?\.h": {"spool", "intake"},
-    r"boost/(asio|beast)(/.*|\.hpp)?": {"base", "link", "simulator", "daemon"},
-    r"CLI/.*": {"cli", "simulator"},
-    r"openssl/.*": {"spool"},
+    r"boost/(asio|beast)(/.*|\.hpp)?": {"base", "link", "simulator", "daemon", "api"},
+    r"prometheus/.*": {"api"},
+    r"CLI/.*": {"cli", "simulator", "linefeedd"},
+    r"openssl/.*": {"spool", "api"},
     r"yaml-cpp/.*": {"config"},
-    r"nlohmann/.*": {"spool", "simulator", "config", "daemon", "cli"},
+    r"spdlog/.*|systemd/.*": {"daemon"},
+    r"nlohmann/.*": {"spool", "simulator", "config", "daemon", "api", "cli"},
 }

@@ -46,7 +46,7 @@ layouts:
   b: {query: SELECT 1}
 printers:
   p: {address: "tcp://10.0.0.1:3002", profile: jet2neo, job_file: 'FFSDISK\JOBS\a.job', open_nozzle: true, errors: {5043: report},
-      poll_min: 400 us, poll_max: 1 s, connect_timeout: 1 s, reply_timeout: 500 ms, queue: {autostart: true, chain: seamless}}
+      poll_min: 400 us, poll_max: 1 s, connect_timeout: 1 s, reply_timeout: 500 ms, queue: {autostart: true, chain: stop}}
 folders:
   f: {path: /d, layout: a, printer: p, pattern: "*.csv", autostart: true, watch: poll, settle: done-companion, poll_interval: 1 h}
 )",
@@ -73,7 +73,7 @@ folders:
     EXPECT_EQ(printer.job_file, "FFSDISK\\JOBS\\a.job");
     EXPECT_EQ(printer.pacing.poll_min, 400us);
     EXPECT_EQ(printer.reply_timeout, 500ms);
-    EXPECT_EQ(printer.queue.chain, Chain::seamless);
+    EXPECT_EQ(printer.queue.chain, Chain::stop);
     EXPECT_EQ(printer.errors.at(5043), ErrorPolicy::report);
     const FolderSettings& folder = settings->folders.front();
     EXPECT_EQ(folder.watch, Watch::poll);
@@ -160,13 +160,23 @@ TEST(Example, shouldBeAcceptedAndMeanWhatItsCommentsSay) {
     // The printer's own policy goes before the table's, the table's before the one for unlisted numbers.
     const PrinterSettings& line1 = *settings->printer("line1");
     const PrinterSettings& line2 = *settings->printer("line2");
-    EXPECT_EQ(settings->policy(line1, {10202}), ErrorPolicy::acknowledge);
-    EXPECT_EQ(settings->policy(line2, {10202}), ErrorPolicy::report);
+    EXPECT_EQ(settings->policy(line1, {51001}), ErrorPolicy::stop);
+    EXPECT_EQ(settings->policy(line2, {51001}), ErrorPolicy::report);
     EXPECT_EQ(settings->policy(line2, {5043}), ErrorPolicy::stop);
     EXPECT_EQ(settings->policy(line2, {77}), ErrorPolicy::report);
-    EXPECT_EQ(settings->acknowledged(line1).size(), 2U);
-    EXPECT_EQ(settings->acknowledged(line2).size(), 1U);
-    EXPECT_EQ(settings->acknowledged(line2)[0], 1223U);
+    for (const PrinterSettings* const line : {&line1, &line2}) {
+        ASSERT_EQ(settings->acknowledged(*line).size(), 1U) << "nothing but the end of a job";
+        EXPECT_EQ(settings->acknowledged(*line)[0], 1223U);
+    }
+}
+
+TEST(Acknowledged, shouldBeWhatThePrinterSaysAndTheTableWhereItSaysNothing) {
+    Settings settings;
+    settings.errors.entries = {{1223, "m", "a", ErrorPolicy::acknowledge}, {7, "m", "a", ErrorPolicy::acknowledge}};
+    const PrinterSettings printer{
+        .name = "p", .address = {}, .errors = {{7, ErrorPolicy::stop}, {10202, ErrorPolicy::acknowledge}}};
+    const auto numbers = settings.acknowledged(printer);
+    EXPECT_THAT((std::vector<std::uint32_t>{numbers.begin(), numbers.end()}), ElementsAre(1223U, 10202U));
 }
 
 } // namespace

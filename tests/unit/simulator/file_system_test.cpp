@@ -64,5 +64,15 @@ TEST(FileSystem, shouldWriteIntoItsDirectoriesOnly) {
     EXPECT_EQ(files.read("new.job"), nullptr);
 }
 
+TEST(FileSystem, shouldReplaceTheFilesThatItCameWith) {
+    FileSystem files{*protocol::profile_by_name("jet3up")};
+    EXPECT_TRUE(files.write("FFSDISK\\Jobs\\DM.JOB", "x")) << "shorter than before";
+    EXPECT_EQ(*files.read("FFSDISK\\Jobs\\DM.JOB"), "x");
+    EXPECT_EQ(files.free_kbyte(), 24576U);
+    EXPECT_FALSE(files.write("FFSDISK\\Jobs\\DM.JOB", std::string(25U << 20U, 'x'))) << "no room";
+    EXPECT_TRUE(files.remove("FFSDISK\\Fonts\\ISO1_7x5.lft"));
+    EXPECT_EQ(files.free_kbyte(), 24580U);
+}
+
 } // namespace
 } // namespace linefeed::simulator

@@ -297,6 +297,15 @@ TEST(PrinterPicture, shouldScrollAndDeliverADetail) {
     EXPECT_EQ(picture(printer).delivered(), 0U);
 }
 
+TEST(PrinterPicture, shouldShowAGraphicWithinAText) {
+    Printer printer;
+    printer.send("^0=MR1\tI(8 3 FF81FF)(I\r");
+    const auto image = picture(printer);
+    EXPECT_EQ(image.height, 8U);
+    EXPECT_EQ(image.width, 6U + 3U + 2U * 6U);
+    EXPECT_EQ(image.strokes.substr(6, 3), "\xFF\x81\xFF");
+}
+
 TEST(PrinterPicture, shouldShowExternTextOrJobWithoutARecord) {
     Printer printer;
     EXPECT_EQ(picture(printer).width, 6 * std::string{"\\FFSDISK\\JOBS\\Testprint.job"}.size());

@@ -1,0 +1,150 @@
+// A printer without total print counter: nothing counts what it throws away when somebody stops it and starts it again.
+// Only its stop point shows that, and the FIFO before the start.
+#include "story.hpp"
+
+namespace linefeed::feeder {
+namespace {
+
+using State = protocol::MachineState;
+using std::chrono::milliseconds;
+
+/// The first fill is sent.
+Story filled() {
+    Story story;
+    story.identify();
+    story.locate(77, std::nullopt);
+    story.granted();
+    story.flush_and_set_stop();
+    story.supplied(Story::last);
+    story.take();
+    return story;
+}
+
+Story printing() {
+    Story story = filled();
+    story.sm(3, 77, 110);
+    story.wait(milliseconds{4});
+    story.rs(State::printing);
+    story.take();
+    return story;
+}
+
+FeederPlan takeover_plan() {
+    FeederPlan plan = plan_with(earlier_run());
+    plan.take_over = true;
+    plan.open->total_before.reset();
+    return plan;
+}
+
+TEST(FeederUncounted, shouldConfirmWhatIsReportedWhileTheStopPointStands) {
+    Story story = printing();
+    story.sm(2, 101, 110);
+    story.expect("=MR 105-105"); // one answer may be damaged
+    story.sm(3, 101, 110);
+    story.expect("printed through 101");
+    story.stop();
+    story.expect("!ST; ?RS");
+    story.judge(1, 103);
+    story.expect(
+        "settle this run so far: printed 102-103 by mail status; settle this run: printed none, in doubt none, "
+        "unused 104-105 by mail status; end: stop_requested (ready for print start, error 0)");
+}
+
+TEST(FeederUncounted, shouldNotStartWithARecordLessThanWasSent) {
+    Story story = filled();
+    story.sm(2, 77, 110); // the first may be lost on a serial line
+    story.sm(2, 77, 110);
+    story.expect("?SM; !ST; ?RS");
+}
+
+TEST(FeederUncounted, shouldTakeAStopPointThatVanishesBehindTheStartForAStop) {
+    Story story = printing();
+    story.sm(2, 101, 0);
+    story.expect("?RS");
+    story.rs(State::printing);
+    story.wait(milliseconds{500});
+    story.take();
+    story.rs(State::printing);
+    story.expect("!ST; ?RS");
+    story.judge(0, 104);
+    EXPECT_NE(story.take().find("in doubt 101-104"), std::string::npos);
+}
+
+TEST(FeederUncounted, shouldDoubtWhatIsPrintedBehindAStop) {
+    Story story = printing();
+    story.sm(2, 101, 110); // 102-104 are in the printer, and 105 is sent
+    story.sm(0, 101, 0);   // stopped: they are gone
+    story.take();
+    story.sm(0, 105, 0); // started again: 105 came too late to be thrown away
+    story.judge(0, 105);
+    EXPECT_NE(story.take().find("in doubt 101-105"), std::string::npos);
+
+    for (const std::uint32_t number : {104U, 105U}) { // stopped, and perhaps started again, between two answers
+        story = printing();
+        story.sm(2, 101, 110);
+        story.take();
+        story.judge(0, number);
+        const bool all_were_in_the_printer = story.take().find("in doubt none, unused 105-105") != std::string::npos;
+        EXPECT_EQ(all_were_in_the_printer, number == 104);
+    }
+}
+
+TEST(FeederUncounted, shouldStopWhenARecordIsMissingInThePrinter) {
+    Story story = printing();
+    story.sm(2, 101, 110);
+    story.expect("=MR 105-105");
+    for (int answers = 0; answers < 6 && story.phase() == Phase::printing; ++answers) {
+        story.take();
+        story.wait(milliseconds{40});
+        story.sm(2, 101, 110); // it holds 104 at most
+    }
+    EXPECT_NE(story.take().find("!ST; ?RS"), std::string::npos);
+    story.judge(0, 104);
+    EXPECT_NE(story.take().find("in doubt none, unused 105-105"), std::string::npos) << "it stops before the gap";
+}
+
+TEST(FeederUncounted, shouldAskAgainForACounterThatOnlyGotDamaged) {
+    Story story;
+    story.identify();
+    story.sm(0, 77, 0);
+    story.sm(0, 77, 0);
+    story.take();
+    story.feeder.on_counters({.product = 0, .stop_after = 1000, .total = {}}, story.now, story.actions);
+    story.expect("?CC");
+    story.cc(1000);
+    EXPECT_EQ(story.phase(), Phase::granting);
+    EXPECT_EQ(std::get<BeginRun>(story.actions[0]).printer.total_prints, 1000U);
+
+    story = reach(Phase::printing);
+    story.sm(0, 104, 110);
+    story.take();
+    story.cc(std::nullopt); // proves nothing
+    story.expect("");
+}
+
+TEST(FeederUncounted, shouldDoubtWhatIsPrintedBetweenTheLooks) {
+    Story story = printing();
+    story.stop();
+    story.judge_unsettled(2, 102);
+    story.clear_fifo(104); // somebody has started it before the flush
+    EXPECT_NE(story.take().find("in doubt 103-104"), std::string::npos);
+}
+
+TEST(FeederUncounted, shouldTakeOverOnlyWhereTheStopPointStands) {
+    for (const std::uint32_t stop_at : {200U, 0U, 151U}) {
+        Story story{quick_settings(), takeover_plan()};
+        story.reported_depth = 16;
+        story.identify(State::printing);
+        story.sm(3, 150, stop_at);
+        story.sm(3, 150, stop_at);
+        story.take();
+        story.cc(std::nullopt);
+        story.sm(2, 151, stop_at);
+        story.sm(2, 151, stop_at);
+        const bool taken_over = story.take().find("adopt run") != std::string::npos;
+        EXPECT_EQ(taken_over, stop_at == 200) << stop_at;
+    }
+}
+
+} // namespace
+} // namespace linefeed::feeder
