@@ -1,7 +1,9 @@
-// The two tables behind commands.hpp. A row per command, in the order of the enumeration, so that a look-up by
-// enumerator is an index; the order is checked at compile time.
+// Look-ups in the one table of commands, see commands.hpp and command_table.hpp.
 #include "protocol/commands.hpp"
 
+#include "protocol/command_table.hpp"
+
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -10,138 +12,109 @@ namespace linefeed::protocol {
 
 namespace {
 
-template <typename Name>
-struct Row {
-    Name name;
-    std::string_view code;
-    std::string_view description;
+constexpr std::size_t code_bytes = 2;
+constexpr std::size_t letters = 26;
+constexpr std::size_t letters_and_digits = 36;
+constexpr std::size_t no_place = SIZE_MAX;
+constexpr std::uint8_t no_command = UINT8_MAX;
+
+/// Where a code stands among all that have a letter in front and a letter or digit behind it.
+constexpr std::size_t place_of(std::string_view code) {
+    const auto letter = [](char c) { return c >= 'A' && c <= 'Z'; };
+    const auto digit = [](char c) { return c >= '0' && c <= '9'; };
+    if (code.size() != code_bytes || !letter(code[0]) || !(letter(code[1]) || digit(code[1]))) {
+        return no_place;
+    }
+    const auto back =
+        letter(code[1]) ? static_cast<std::size_t>(code[1] - 'A') : static_cast<std::size_t>(code[1] - '0') + letters;
+    return static_cast<std::size_t>(code[0] - 'A') * letters_and_digits + back;
+}
+
+/// What is known of the names of one enumeration.
+template <std::size_t Size>
+struct Names {
+    std::array<std::uint8_t, Size> rows{};                          ///< of the table, by enumerator
+    std::array<std::uint8_t, letters * letters_and_digits> index{}; ///< by the place of the code: every answer is
+                                                                    ///< looked up on its way to the refill
 };
 
-constexpr std::array<Row<Action>, 22> actions{{
-    {Action::start_print, "GO", "start print-ready"},
-    {Action::stop_print, "ST", "stop print-ready"},
-    {Action::nozzle_open, "NO", "open the nozzle"},
-    {Action::nozzle_close, "NC", "close the nozzle"},
-    {Action::motor_open, "MO", "motor step open"},
-    {Action::motor_close, "MC", "motor step close"},
-    {Action::reset_counters, "RC", "reset the object counters of the job"},
-    {Action::factory_reset, "FA", "factory reset"},
-    {Action::reload_fonts, "LF", "reload the fonts"},
-    {Action::acknowledge_errors, "EQ", "acknowledge errors"},
-    {Action::user_suspend, "US", "block the panel for 10 s"},
-    {Action::user_resume, "UR", "release the panel"},
-    {Action::power_on, "PO", "power on, out of standby"},
-    {Action::power_off, "PF", "power off, to standby"},
-    {Action::restart, "RM", "restart the machine"},
-    {Action::flush_fifo, "FF", "flush the mailing FIFO"},
-    {Action::display_off, "W0", "WYSIWYG display off"},
-    {Action::display_on, "W1", "WYSIWYG display on"},
-    {Action::length_on, "LN", "send the length of each frame"},
-    {Action::echo_on, "EM", "echo commands"},
-    {Action::crc_ok, "OK", "the CRC was right"},
-    {Action::end_of_data, "EN", "end of data"},
-}};
-
-constexpr std::array<Row<Parameter>, 31> parameters{{
-    {Parameter::AC, "AC", "actual counters"},
-    {Parameter::CC, "CC", "current counters"},
-    {Parameter::CM, "CM", "mailing configuration: stop at"},
-    {Parameter::CO, "CO", "change output"},
-    {Parameter::CP, "CP", "counter parameters"},
-    {Parameter::DL, "DL", "date and time"},
-    {Parameter::DS, "DS", "free flash memory"},
-    {Parameter::EL, "EL", "error list"},
-    {Parameter::ET, "ET", "external text"},
-    {Parameter::EV, "EV", "event list"},
-    {Parameter::EX, "EX", "external signals and speed"},
-    {Parameter::FC, "FC", "CRC that the printer calculated"},
-    {Parameter::FL, "FL", "block length to fill"},
-    {Parameter::GW, "GW", "WYSIWYG data"},
-    {Parameter::HS, "HS", "hydraulic settings"},
-    {Parameter::IC, "IC", "input configuration"},
-    {Parameter::JB, "JB", "current job as a script"},
-    {Parameter::JL, "JL", "name of the loaded job"},
-    {Parameter::MC, "MC", "main configuration"},
-    {Parameter::MR, "MR", "mail record"},
-    {Parameter::MS, "MS", "machine status: actors"},
-    {Parameter::NR, "NR", "CRC of the next frame"},
-    {Parameter::OC, "OC", "output configuration"},
-    {Parameter::PR, "PR", "print parameter"},
-    {Parameter::RC, "RC", "reset counter"},
-    {Parameter::RS, "RS", "machine state"},
-    {Parameter::SC, "SC", "service configuration"},
-    {Parameter::SH, "SH", "service history"},
-    {Parameter::SM, "SM", "mailing status"},
-    {Parameter::SW, "SW", "start of the WYSIWYG data"},
-    {Parameter::VS, "VS", "versions"},
-}};
-
-template <typename Table>
-constexpr bool in_order(const Table& table) {
-    for (std::size_t i = 0; i < table.size(); ++i) {
-        if (static_cast<std::size_t>(table[i].name) != i || table[i].code.size() != 2) {
-            return false;
+/// From the rows of a group and, where that has none for a name, of another.
+template <std::size_t Size>
+constexpr Names<Size> names_of(Group group, Group other) {
+    Names<Size> names;
+    names.rows.fill(no_command);
+    names.index.fill(no_command);
+    for (std::size_t place = 0; place < command_table.size(); ++place) {
+        const Command& row = command_table[place];
+        if (row.group == group || (row.group == other && names.rows[row.index] == no_command)) {
+            names.rows[row.index] = static_cast<std::uint8_t>(place);
+            names.index[place_of(row.code)] = row.index;
         }
     }
-    return true;
-}
-static_assert(in_order(actions) && static_cast<std::size_t>(Action::end_of_data) + 1 == actions.size());
-static_assert(in_order(parameters) && static_cast<std::size_t>(Parameter::VS) + 1 == parameters.size());
-
-constexpr std::uint16_t packed(std::string_view code) {
-    return static_cast<std::uint16_t>(static_cast<unsigned char>(code[0]) << 8 | static_cast<unsigned char>(code[1]));
+    return names;
 }
 
-/// The codes alone, side by side: every answer is looked up on its way to the refill, and a table of texts is twenty
-/// cache lines that nobody else has use for.
-template <typename Name, std::size_t Size>
-constexpr std::array<std::uint16_t, Size> packed_codes(const std::array<Row<Name>, Size>& table) {
-    std::array<std::uint16_t, Size> codes{};
-    for (std::size_t i = 0; i < Size; ++i) {
-        codes[i] = packed(table[i].code);
-    }
-    return codes;
+constexpr auto actions = names_of<static_cast<std::size_t>(Action::end_of_data) + 1>(Group::action, Group::action);
+constexpr auto parameters = names_of<static_cast<std::size_t>(Parameter::VS) + 1>(Group::parameter, Group::inquiry);
+constexpr auto files = names_of<static_cast<std::size_t>(FileCommand::FA) + 1>(Group::file, Group::file);
+
+/// Each enumerator has its row, and each code leads to one.
+template <std::size_t Size>
+constexpr bool complete(const Names<Size>& names) {
+    return std::ranges::count(names.rows, no_command) == 0 &&
+           std::ranges::count_if(names.index, [](std::uint8_t index) { return index != no_command; }) ==
+               static_cast<std::ptrdiff_t>(Size);
 }
-constexpr auto action_codes = packed_codes(actions);
-constexpr auto parameter_codes = packed_codes(parameters);
+static_assert(complete(actions) && complete(parameters) && complete(files));
 
 template <typename Name, std::size_t Size>
-std::optional<Name> find(const std::array<std::uint16_t, Size>& codes, std::string_view code) {
-    if (code.size() == 2) {
-        const std::uint16_t wanted = packed(code);
-        for (std::size_t i = 0; i < Size; ++i) {
-            if (codes[i] == wanted) {
-                return static_cast<Name>(i);
-            }
-        }
-    }
-    return std::nullopt;
+const Command& row_of(const Names<Size>& names, Name name) {
+    return command_table[names.rows[static_cast<std::size_t>(name)]];
+}
+
+template <typename Name, std::size_t Size>
+std::optional<Name> find(const Names<Size>& names, std::string_view code) {
+    const std::size_t place = place_of(code);
+    const std::uint8_t index = place == no_place ? no_command : names.index[place];
+    return index == no_command ? std::nullopt : std::optional{static_cast<Name>(index)};
 }
 
 } // namespace
 
 std::string_view code(Action action) {
-    return actions[static_cast<std::size_t>(action)].code;
+    return row_of(actions, action).code;
 }
 
 std::string_view code(Parameter parameter) {
-    return parameters[static_cast<std::size_t>(parameter)].code;
+    return row_of(parameters, parameter).code;
+}
+
+std::string_view code(FileCommand command) {
+    return row_of(files, command).code;
 }
 
 std::string_view description(Action action) {
-    return actions[static_cast<std::size_t>(action)].description;
+    return row_of(actions, action).description;
 }
 
 std::string_view description(Parameter parameter) {
-    return parameters[static_cast<std::size_t>(parameter)].description;
+    return row_of(parameters, parameter).description;
+}
+
+std::string_view description(FileCommand command) {
+    return row_of(files, command).description;
 }
 
 std::optional<Action> action_from_code(std::string_view code) {
-    return find<Action>(action_codes, code);
+    return find<Action>(actions, code);
 }
 
 std::optional<Parameter> parameter_from_code(std::string_view code) {
-    return find<Parameter>(parameter_codes, code);
+    return find<Parameter>(parameters, code);
+}
+
+std::optional<FileCommand> file_command_from_code(std::string_view code) {
+    return find<FileCommand>(files, code);
 }
 
 } // namespace linefeed::protocol

@@ -1,5 +1,5 @@
-// The names of the protocol: every action (section 2) and every parameter (sections 3 and 4), each in one table with
-// its two-letter code, so that a command is added in one place.
+// The names of the protocol: every action (section 2), every parameter (sections 3 and 4) and every file command
+// (section 8). What else is known of each stands in command_table.hpp, so that a command is added in one place.
 #pragma once
 
 #include <optional>
@@ -68,17 +68,34 @@ enum class Parameter {
     VS,
 };
 
+/// The two letters behind `$` (protocol, section 8), named as in the manual.
+enum class FileCommand {
+    RD, ///< request a directory
+    DI, ///< directory information
+    DF, ///< delete a file
+    RF, ///< request a file
+    FH, ///< header of a file transfer
+    FT, ///< block of a file transfer
+    FA, ///< acknowledgement of a block
+};
+
 /// The two-letter code, e.g. "GO".
 [[nodiscard]] std::string_view code(Action action);
 /// The two-letter code, e.g. "SM".
 [[nodiscard]] std::string_view code(Parameter parameter);
+/// The two-letter code, e.g. "FH".
+[[nodiscard]] std::string_view code(FileCommand command);
 /// A few words for logs, e.g. "flush the mailing FIFO".
 [[nodiscard]] std::string_view description(Action action);
 /// A few words for logs, e.g. "mailing status".
 [[nodiscard]] std::string_view description(Parameter parameter);
+/// A few words for logs, e.g. "delete a file".
+[[nodiscard]] std::string_view description(FileCommand command);
 /// The action with that code, if the protocol knows one.
 [[nodiscard]] std::optional<Action> action_from_code(std::string_view code);
 /// The parameter with that code, if the protocol knows one.
 [[nodiscard]] std::optional<Parameter> parameter_from_code(std::string_view code);
+/// The file command with that code, if the protocol knows one.
+[[nodiscard]] std::optional<FileCommand> file_command_from_code(std::string_view code);
 
 } // namespace linefeed::protocol

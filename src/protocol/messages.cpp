@@ -1,11 +1,14 @@
-// Decodes frames into messages, see messages.hpp. A new `=XX` gets a function here and a row in the table of readers.
+// Decodes frames into messages, see messages.hpp. A message that describes its fields needs a row in the table of
+// readers, and nothing else; the others have readers of their own (special_messages.hpp).
 #include "protocol/messages.hpp"
 
 #include "base/assert.hpp"
-#include "protocol/parameter_reader.hpp"
+#include "protocol/field_reader.hpp"
+#include "protocol/special_messages.hpp"
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <utility>
 
 namespace linefeed::protocol {
@@ -14,110 +17,111 @@ namespace {
 
 constexpr std::size_t code_bytes = 2;
 
-Message read_machine_status(ParameterReader& in, EscapeMode) {
-    MachineStatus status;
-    // In standby only the machine state is valid; newer firmware may know more nozzle states (RS in section 4).
-    const auto nozzle = in.optional_number("a nozzle state").value_or(0);
-    status.nozzle = nozzle <= 5 ? static_cast<NozzleState>(nozzle) : NozzleState::invalid;
-    status.machine = static_cast<MachineState>(in.number("a machine state", 1, 6));
-    if (status.machine == MachineState::standby) {
-        return MachineStatus{};
+using Read = Message (*)(ParameterReader&, EscapeMode);
+
+template <DescribedMessage T>
+Message read_described(ParameterReader& in, EscapeMode escapes) {
+    T message;
+    FieldReader reader{in, escapes};
+    T::describe(reader, message);
+    return message;
+}
+
+template <auto read>
+Message read_special(ParameterReader& in, EscapeMode escapes) {
+    if constexpr (std::is_invocable_v<decltype(read), ParameterReader&, EscapeMode>) {
+        return read(in, escapes);
+    } else {
+        return read(in);
     }
-    status.error.raw = in.signed_number("an error number");
-    status.cover_open = in.optional_number("0 or 1").value_or(0) != 0;
-    status.speed = in.optional_number("a speed").value_or(0);
-    if (const auto changed = in.optional_number("0 or 1")) {
-        status.job_changed = *changed != 0;
-    }
-    return status;
 }
 
-Message read_mail_status(ParameterReader& in, EscapeMode) {
-    MailStatus status;
-    status.depth = in.number("a FIFO depth");
-    status.entries = in.number("a number of entries");
-    status.last_printed = in.record_number();
-    status.stop_at = in.record_number();
-    status.last_print_finished = in.number("a number") > 0;
-    status.print_go_count = in.optional_number("a number of PrintGos");
-    return status;
-}
+/// How each parameter transfer is read, by Parameter. None: JB is never transferred, MR has its own parser.
+constexpr auto parameter_readers = [] {
+    std::array<Read, static_cast<std::size_t>(Parameter::VS) + 1> readers{};
+    const auto described = [&readers]<typename... T>(std::variant<T...>*) {
+        const auto add = [&readers]<typename One>(One*) {
+            if constexpr (DescribedParameter<One>) {
+                readers[static_cast<std::size_t>(One::parameter)] = read_described<One>;
+            }
+        };
+        (add(static_cast<T*>(nullptr)), ...);
+    };
+    described(static_cast<Message*>(nullptr));
+    const auto set = [&readers](Parameter parameter, Read read) {
+        readers[static_cast<std::size_t>(parameter)] = read;
+    };
+    set(Parameter::RS, read_special<read_machine_status>);
+    set(Parameter::AC, read_special<read_job_counters>);
+    set(Parameter::RC, read_special<read_counter_reset>);
+    set(Parameter::EL, read_special<read_error_list>);
+    set(Parameter::EV, read_special<read_event_list>);
+    set(Parameter::GW, read_special<read_wysiwyg_line>);
+    set(Parameter::ET, read_special<read_extern_text>);
+    return readers;
+}();
 
-Message read_stop_at(ParameterReader& in, EscapeMode) {
-    return StopAt{in.record_number()};
-}
-
-Message read_counters(ParameterReader& in, EscapeMode) {
-    Counters counters;
-    counters.product = in.optional_number("a product counter");
-    counters.stop_after = in.optional_number("a number of products");
-    counters.total = in.optional_number("a print counter");
-    return counters;
-}
-
-Message read_versions(ParameterReader& in, EscapeMode escapes) {
-    VersionInfo version;
-    for (std::string* const field :
-         {&version.fpga, &version.rip, &version.sdc, &version.fep, &version.kernel, &version.system_type,
-          &version.language_pack, &version.font_pack, &version.firmware, &version.type, &version.serial_number}) {
-        *field = unescape(in.text().value_or(std::string_view{}), escapes);
-    }
-    return version;
-}
-
-Message read_job_name(ParameterReader& in, EscapeMode escapes) {
-    return JobName{unescape(in.text().value_or(std::string_view{}), escapes)};
-}
-
-struct Reader {
-    Parameter parameter;
-    Message (*read)(ParameterReader&, EscapeMode);
+/// How each file command is read, by FileCommand.
+constexpr std::array<Read, static_cast<std::size_t>(FileCommand::FA) + 1> file_readers{
+    read_described<DirectoryRequest>,    read_special<read_directory_block>, read_described<FileDeletion>,
+    read_described<FileRequest>,         read_described<FileHeader>,         read_special<read_file_block>,
+    read_described<FileAcknowledgement>,
 };
-
-constexpr std::array<Reader, 6> readers{{
-    {Parameter::SM, read_mail_status},
-    {Parameter::RS, read_machine_status},
-    {Parameter::CM, read_stop_at},
-    {Parameter::CC, read_counters},
-    {Parameter::VS, read_versions},
-    {Parameter::JL, read_job_name},
-}};
-
-MalformedMessage malformed(std::string_view payload, std::string_view reason) {
-    return {std::string{payload}, "=" + std::string{payload.substr(0, code_bytes)} + ": " + std::string{reason}};
-}
 
 UnknownMessage unknown(const Frame& frame) {
     return {frame.group, std::string{frame.payload}};
 }
 
+MalformedMessage malformed(const Frame& frame, std::string_view reason) {
+    std::string text{static_cast<char>(frame.group)};
+    text.append(frame.payload.substr(0, code_bytes)).append(": ").append(reason);
+    return {std::string{frame.payload}, std::move(text), frame.group};
+}
+
+MalformedMessage too_long(const Frame& frame) {
+    return malformed(frame, "the frame is longer than any that is known");
+}
+
+/// One variable that every path returns, so that the message is made in its place and never moved.
+Message read(const Frame& frame, Read reader, EscapeMode escapes) {
+    ParameterReader in{frame.payload.substr(code_bytes)};
+    Message message = reader(in, escapes);
+    if (!in.ok()) {
+        message = malformed(frame, in.problem());
+    }
+    return message;
+}
+
 Message read_parameter(const Frame& frame, EscapeMode escapes) {
-    const std::string_view payload = frame.payload;
-    const auto parameter = parameter_from_code(payload.substr(0, code_bytes));
+    const auto parameter = parameter_from_code(frame.payload.substr(0, code_bytes));
     if (!parameter) {
         return unknown(frame);
     }
-    const std::string_view values = payload.substr(code_bytes);
     if (*parameter == Parameter::MR) {
-        if (auto record = parse_mail_record(values, escapes)) {
+        if (auto record = parse_mail_record(frame.payload.substr(code_bytes), escapes)) {
             return *std::move(record);
         }
-        return malformed(payload, "the record number is wrong or missing");
+        return malformed(frame, "the record number is wrong or missing");
     }
-    for (const Reader& reader : readers) {
-        if (reader.parameter == *parameter) {
-            if (frame.truncated) {
-                return malformed(payload, "the frame is longer than any that is known");
-            }
-            ParameterReader in{values};
-            Message message = reader.read(in, escapes);
-            if (!in.ok()) {
-                message = malformed(payload, in.problem());
-            }
-            return message;
-        }
+    const Read reader = parameter_readers[static_cast<std::size_t>(*parameter)];
+    if (reader == nullptr) {
+        return unknown(frame);
     }
-    return unknown(frame);
+    if (frame.truncated) {
+        return too_long(frame);
+    }
+    return read(frame, reader, escapes);
+}
+
+Message read_file(const Frame& frame, EscapeMode escapes) {
+    const auto command = file_command_from_code(frame.payload.substr(0, code_bytes));
+    if (!command) {
+        return unknown(frame);
+    }
+    if (frame.truncated) {
+        return too_long(frame);
+    }
+    return read(frame, file_readers[static_cast<std::size_t>(*command)], escapes);
 }
 
 Message read_action(const Frame& frame) {
@@ -139,57 +143,29 @@ Message read_inquiry(const Frame& frame) {
     return InquiryMessage{*parameter, std::string{frame.payload.substr(code_bytes)}};
 }
 
+Message read_script(const Frame& frame, EscapeMode escapes) {
+    if (frame.truncated) {
+        return too_long(frame);
+    }
+    return ScriptLine{unescape(frame.payload, escapes)};
+}
+
 } // namespace
 
 Message parse_message(const Frame& frame, EscapeMode escapes) {
     switch (frame.group) {
     case Group::script:
-    case Group::file:
-        return unknown(frame);
+        return read_script(frame, escapes);
     case Group::action:
         return read_action(frame);
     case Group::inquiry:
         return read_inquiry(frame);
     case Group::parameter:
         return read_parameter(frame, escapes);
+    case Group::file:
+        return read_file(frame, escapes);
     }
     assertion_failed("Group", __FILE__, __LINE__);
-}
-
-std::string_view to_string(NozzleState state) {
-    switch (state) {
-    case NozzleState::invalid:
-        return "invalid";
-    case NozzleState::opens:
-        return "opens";
-    case NozzleState::open:
-        return "open";
-    case NozzleState::closes:
-        return "closes";
-    case NozzleState::closed:
-        return "closed";
-    case NozzleState::in_between:
-        return "in between";
-    }
-    assertion_failed("NozzleState", __FILE__, __LINE__);
-}
-
-std::string_view to_string(MachineState state) {
-    switch (state) {
-    case MachineState::standby:
-        return "standby";
-    case MachineState::initialising:
-        return "initialising";
-    case MachineState::service:
-        return "interval or service panel";
-    case MachineState::ready:
-        return "ready for action";
-    case MachineState::ready_to_print:
-        return "ready for print start";
-    case MachineState::printing:
-        return "printing";
-    }
-    assertion_failed("MachineState", __FILE__, __LINE__);
 }
 
 } // namespace linefeed::protocol

@@ -1,18 +1,22 @@
-// The typed messages of the protocol (sections 2 to 5), with parser and encoder each. A new command gets its struct
-// here, its place in Message, and its row in messages.cpp. As the manual demands: an empty parameter leaves its value,
-// excess parameters are ignored, unknown commands are carried along as they came.
+// Every command of the protocol as a typed message (sections 2 to 8), with parser and encoder. A new command gets its
+// struct in the header of its theme, its place in Message, and its row in command_table.hpp. As the manual demands: an
+// empty parameter leaves its value, excess parameters are ignored, unknown commands are carried along as they came.
 #pragma once
 
-#include "base/record_number.hpp"
 #include "protocol/commands.hpp"
+#include "protocol/counter_messages.hpp"
+#include "protocol/escapes.hpp"
+#include "protocol/file_messages.hpp"
 #include "protocol/frame.hpp"
+#include "protocol/list_messages.hpp"
+#include "protocol/machine_messages.hpp"
 #include "protocol/mail_record.hpp"
-#include "protocol/printer_error.hpp"
+#include "protocol/print_messages.hpp"
+#include "protocol/signal_messages.hpp"
+#include "protocol/transmission_messages.hpp"
 
-#include <cstdint>
-#include <optional>
+#include <concepts>
 #include <string>
-#include <string_view>
 #include <variant>
 
 namespace linefeed::protocol {
@@ -30,68 +34,7 @@ struct InquiryMessage {
     friend bool operator==(const InquiryMessage&, const InquiryMessage&) = default;
 };
 
-/// RS, first parameter.
-enum class NozzleState { invalid = 0, opens = 1, open = 2, closes = 3, closed = 4, in_between = 5 };
-/// RS, second parameter.
-enum class MachineState {
-    standby = 1,
-    initialising = 2,
-    service = 3,        ///< interval or service panel
-    ready = 4,          ///< ready for action: the nozzle can be opened
-    ready_to_print = 5, ///< ready for print start
-    printing = 6,
-};
-
-/// `=RS`, printer to host: machine state information (section 4).
-struct MachineStatus {
-    NozzleState nozzle = NozzleState::invalid;
-    MachineState machine = MachineState::standby;
-    PrinterError error{};
-    bool cover_open = false;
-    std::uint32_t speed = 0;           ///< dm/min, or m/min on old firmware (profile)
-    std::optional<bool> job_changed{}; ///< absent on old firmware
-    friend bool operator==(const MachineStatus&, const MachineStatus&) = default;
-};
-
-/// `=SM`, printer to host: mailing status (section 5). May be one inquiry old.
-struct MailStatus {
-    std::uint32_t depth = 0;
-    std::uint32_t entries = 0;
-    RecordNumber last_printed{}; ///< 0 = none
-    RecordNumber stop_at{};      ///< 0 = off
-    bool last_print_finished = true;
-    std::optional<std::uint32_t> print_go_count{}; ///< newer firmware only
-    friend bool operator==(const MailStatus&, const MailStatus&) = default;
-};
-
-/// `=CM`, host to printer: stop when this record has been printed; 0 = off.
-struct StopAt {
-    RecordNumber number{};
-    friend bool operator==(const StopAt&, const StopAt&) = default;
-};
-
-/// `=CC`: counters. Host to printer, an absent value is left as it is.
-struct Counters {
-    std::optional<std::uint32_t> product{};
-    std::optional<std::uint32_t> stop_after{}; ///< 0 = off
-    std::optional<std::uint32_t> total{};      ///< prints of the printer's life; printer to host only
-    friend bool operator==(const Counters&, const Counters&) = default;
-};
-
-/// `=VS`, printer to host: versions. Missing strings are empty.
-struct VersionInfo {
-    std::string fpga{}, rip{}, sdc{}, fep{}, kernel{}, system_type{}, language_pack{}, font_pack{}, firmware{}, type{};
-    std::string serial_number{};
-    friend bool operator==(const VersionInfo&, const VersionInfo&) = default;
-};
-
-/// `=JL`: name of the loaded job with path, or (host to printer) the job to load.
-struct JobName {
-    std::string path{};
-    friend bool operator==(const JobName&, const JobName&) = default;
-};
-
-/// A frame that no type above describes: carried along as it came.
+/// A frame that no type describes: carried along as it came.
 struct UnknownMessage {
     Group group = Group::parameter;
     std::string payload{};
@@ -102,26 +45,59 @@ struct UnknownMessage {
 struct MalformedMessage {
     std::string payload{};
     std::string reason{}; ///< e.g. "=SM: parameter 3 is not a record number: \"x\""
+    Group group = Group::parameter;
     friend bool operator==(const MalformedMessage&, const MalformedMessage&) = default;
 };
 
 using Message = std::variant<UnknownMessage, MalformedMessage, ActionMessage, InquiryMessage, MachineStatus, MailStatus,
-                             StopAt, Counters, VersionInfo, JobName, MailRecord>;
+                             StopAt, Counters, VersionInfo, JobName, MailRecord, ClockTime, FreeFlash, HydraulicState,
+                             MainConfiguration, ActorStates, ServiceIntervals, ServiceHistory, ExternalStates,
+                             InputConfiguration, OutputConfiguration, OutputChange, JobCounters, CounterParameter,
+                             CounterReset, ExternText, PrintParameter, WysiwygStart, WysiwygLine, NextCrc, CrcFailed,
+                             BlockLength, ErrorListBlock, EventListBlock, ScriptLine, DirectoryRequest, DirectoryBlock,
+                             FileDeletion, FileRequest, FileHeader, FileBlock, FileAcknowledgement>;
 
 /// Decodes a frame. Never fails: what cannot be read is MalformedMessage or UnknownMessage. Allocates only for messages
-/// with text; RS, SM, CC and actions never do.
+/// with text or lists; RS, SM, CC and actions never do.
 [[nodiscard]] Message parse_message(const Frame& frame, EscapeMode escapes);
 
-/// Appends the frame of a message to `out`.
-void append_message(std::string& out, const MachineStatus& status);
-void append_message(std::string& out, const MailStatus& status);
-void append_message(std::string& out, const StopAt& stop);
-void append_message(std::string& out, const Counters& counters);
-void append_message(std::string& out, const VersionInfo& version, EscapeMode escapes);
-void append_message(std::string& out, const JobName& job, EscapeMode escapes);
+/// A message that is a row of fields, which it describes: `describe(visitor, message)` calls the visitor for each. It
+/// names its parameter or its file command.
+template <typename T>
+concept DescribedParameter = std::same_as<decltype(T::parameter), const Parameter>;
+template <typename T>
+concept DescribedFile = std::same_as<decltype(T::command), const FileCommand>;
+template <typename T>
+concept DescribedMessage = DescribedParameter<T> || DescribedFile<T>;
+/// A described message with text, which firmware with escapes wants escaped.
+template <typename T>
+concept DescribedText = DescribedMessage<T> && requires {
+    T::has_text;
+};
 
-/// Words for people, e.g. "ready for print start".
-[[nodiscard]] std::string_view to_string(NozzleState state);
-[[nodiscard]] std::string_view to_string(MachineState state);
+/// Appends the frame of a message to `out`. Precondition: every value is within the range that its type states, and no
+/// text holds a CR (a TAB only where TABs belong to the text).
+template <DescribedMessage T>
+requires(!DescribedText<T>) void append_message(std::string& out, const T& message);
+template <DescribedText T>
+void append_message(std::string& out, const T& message, EscapeMode escapes);
+void append_message(std::string& out, const ActionMessage& message);
+void append_message(std::string& out, const InquiryMessage& message);
+void append_message(std::string& out, const JobCounters& counters);
+void append_message(std::string& out, const CounterReset& reset);
+void append_message(std::string& out, const ErrorListBlock& block);
+void append_message(std::string& out, const EventListBlock& block);
+void append_message(std::string& out, const WysiwygLine& line);
+void append_message(std::string& out, const FileBlock& block);
+void append_message(std::string& out, const ExternText& text, EscapeMode escapes);
+void append_message(std::string& out, const MailRecord& record, EscapeMode escapes);
+void append_message(std::string& out, const ScriptLine& line, EscapeMode escapes);
+void append_message(std::string& out, const DirectoryBlock& block, EscapeMode escapes);
+/// As it came.
+void append_message(std::string& out, const UnknownMessage& message);
+void append_message(std::string& out, const MalformedMessage& message);
+
+/// The same for whatever message it is.
+void append_any_message(std::string& out, const Message& message, EscapeMode escapes);
 
 } // namespace linefeed::protocol

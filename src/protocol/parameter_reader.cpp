@@ -5,6 +5,7 @@
 #include "protocol/decimal.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace linefeed::protocol {
 
@@ -70,16 +71,52 @@ std::uint32_t ParameterReader::number(std::string_view what, std::uint32_t small
     return *number;
 }
 
-std::int32_t ParameterReader::signed_number(std::string_view what) {
-    const std::string_view value = trimmed();
+namespace {
+
+/// 32 bits written as a signed or an unsigned decimal.
+std::optional<std::int32_t> read_32_bits(std::string_view value) {
     if (const auto number = read_decimal<std::int32_t>(value)) {
         return *number;
     }
     if (const auto number = read_decimal<std::uint32_t>(value)) {
         return static_cast<std::int32_t>(*number);
     }
-    complain(what, value);
-    return 0;
+    return std::nullopt;
+}
+
+} // namespace
+
+std::int32_t ParameterReader::signed_number(std::string_view what) {
+    const std::string_view value = trimmed();
+    const auto number = read_32_bits(value);
+    if (!number) {
+        complain(what, value);
+    }
+    return number.value_or(0);
+}
+
+std::optional<std::int32_t> ParameterReader::optional_signed_number(std::string_view what) {
+    const std::string_view value = trimmed();
+    const auto number = read_32_bits(value);
+    if (!number && !value.empty()) {
+        complain(what, value);
+    }
+    return number;
+}
+
+std::uint64_t ParameterReader::wide_number(std::string_view what, std::uint64_t largest) {
+    const std::string_view value = trimmed();
+    const auto number = read_decimal<std::uint64_t>(value);
+    if (!number || *number > largest) {
+        complain(what, value);
+        return 0;
+    }
+    return *number;
+}
+
+std::string_view ParameterReader::rest() {
+    ++position_;
+    return std::exchange(rest_, std::nullopt).value_or(std::string_view{});
 }
 
 std::string ParameterReader::problem() const {

@@ -2,6 +2,7 @@
 #include "simulator/conveyor.hpp"
 
 #include "base/assert.hpp"
+#include "simulator/random_draw.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -14,15 +15,6 @@ constexpr double percent = 100;
 
 Duration from_ns(double ns) {
     return Duration{static_cast<Duration::rep>(std::llround(ns))};
-}
-
-/// SplitMix64: the same draws with every library and compiler.
-std::uint64_t next_random(std::uint64_t& state) {
-    state += 0x9E3779B97F4A7C15U;
-    std::uint64_t z = state;
-    z = (z ^ (z >> 30U)) * 0xBF58476D1CE4E5B9U;
-    z = (z ^ (z >> 27U)) * 0x94D049BB133111EBU;
-    return z ^ (z >> 31U);
 }
 
 } // namespace

@@ -1,65 +1,31 @@
 // The half of the printer model that answers inquiries (protocol, sections 3 and 4). What has no meaning in a simulator
-// gets values such as a healthy printer shows.
+// gets values such as a healthy printer shows (printer_health.hpp).
 #include "base/assert.hpp"
-#include "protocol/decimal.hpp"
-#include "protocol/frame_encoder.hpp"
 #include "protocol/parameter_reader.hpp"
+#include "simulator/picture.hpp"
+#include "simulator/printer_health.hpp"
 #include "simulator/printer_model.hpp"
 
-#include <initializer_list>
+#include <iterator>
 #include <utility>
 
 namespace linefeed::simulator {
 namespace {
 
-using protocol::Group;
 using protocol::MachineState;
+using protocol::Message;
 using protocol::NozzleState;
 using protocol::Parameter;
 
-constexpr std::uint32_t free_flash_kbyte = 24576;
-constexpr std::uint32_t max_speed_dm_per_min = 3000;
-constexpr std::uint32_t fall_time_ms = 7100;
-constexpr std::uint32_t pressure_mbar = 2400;
-constexpr std::uint32_t suction_pump_percent = 35;
-constexpr std::uint32_t diaphragm_position = 1000;
-constexpr std::uint32_t visco_correction = 100;
-constexpr std::uint32_t dot_frequency_khz = 66;
-constexpr std::uint32_t ink_number = 70000;
-constexpr std::uint32_t operating_hours = 1234;
-constexpr std::uint32_t last_service_hours = 1000;
-constexpr std::uint32_t service_interval_hours = 2000;
-constexpr std::uint32_t service_interval_days = 365;
-constexpr std::chrono::sys_seconds last_service{std::chrono::sys_days{std::chrono::year{2023} / 6 / 15} +
-                                                std::chrono::hours{9}};
+/// What the outputs signal, from X3.1 on.
+constexpr std::array<protocol::OutputSignal, 4> configured_signals{
+    protocol::OutputSignal::refill_warning, protocol::OutputSignal::error_or_stop, protocol::OutputSignal::print_ready,
+    protocol::OutputSignal::print_active};
 
-std::string joined(std::initializer_list<std::uint32_t> values) {
-    std::string out;
-    for (const std::uint32_t value : values) {
-        if (!out.empty()) {
-            out += '\t';
-        }
-        protocol::append_decimal(out, value);
-    }
-    return out;
-}
-
-/// Parameter 9 of `=MS`: the motor that seals the head.
-std::uint32_t motor_state(NozzleState nozzle) {
-    switch (nozzle) {
-    case NozzleState::opens:
-        return 1;
-    case NozzleState::open:
-        return 2;
-    case NozzleState::closes:
-        return 3;
-    case NozzleState::invalid:
-    case NozzleState::closed:
-        return 4;
-    case NozzleState::in_between:
-        return 5;
-    }
-    assertion_failed("NozzleState", __FILE__, __LINE__);
+template <typename Block, typename Entry>
+std::vector<Message> blocks_of(const Log<Entry>& log) {
+    auto blocks = protocol::to_blocks<Block>(log.entries());
+    return {std::make_move_iterator(blocks.begin()), std::make_move_iterator(blocks.end())};
 }
 
 } // namespace
@@ -104,123 +70,159 @@ std::uint32_t PrinterModel::speed_shown(std::uint32_t dm_per_min) const {
     return metres ? (dm_per_min + dm_in_m / 2) / dm_in_m : dm_per_min;
 }
 
-bool PrinterModel::is_jet2neo() const {
-    return settings_.profile.name.starts_with("jet2neo");
-}
-
-void PrinterModel::answer(ConnectionId connection, const protocol::Frame& frame, bool secured, Instant now) {
-    const auto parameter = protocol::parameter_from_code(frame.payload.substr(0, 2));
-    if (!parameter) {
-        return;
-    }
-    std::string out;
-    if (*parameter == Parameter::RS) {
-        protocol::append_message(out, machine_status());
-        job_changed_ = false;
-    } else if (*parameter == Parameter::SM) {
-        protocol::append_message(out, mail_status_answer());
-    } else if (*parameter == Parameter::CC) {
-        protocol::append_message(out, counters());
-    } else if (*parameter == Parameter::VS) {
-        protocol::append_message(out, versions_of(settings_), settings_.profile.escapes);
-    } else if (*parameter == Parameter::JL) {
-        out = path_frame();
-    } else if (*parameter == Parameter::EL) {
-        for (const std::string& block : error_list_.blocks()) {
-            out.clear();
-            protocol::append_frame(out, Group::parameter, block);
-            send(connection, out, secured);
+void PrinterModel::answer(ConnectionId connection, const protocol::InquiryMessage& inquiry, bool secured, Instant now) {
+    const auto send_all = [&](const std::vector<Message>& messages) {
+        for (const Message& message : messages) {
+            send(connection, message, secured);
         }
-        return;
-    } else {
-        const std::string values =
-            *parameter == Parameter::PR ? print_parameter(frame.payload.substr(2)) : values_of(*parameter, now);
-        if (values.empty() && *parameter != Parameter::ET) {
-            return;
-        }
-        protocol::append_frame(out, Group::parameter, std::string{protocol::code(*parameter)} + values);
+    };
+    if (inquiry.parameter == Parameter::EL) {
+        send_all(blocks_of<protocol::ErrorListBlock>(error_list_));
+    } else if (inquiry.parameter == Parameter::EV) {
+        send_all(blocks_of<protocol::EventListBlock>(event_list_));
+    } else if (inquiry.parameter == Parameter::GW) {
+        send_all(picture());
+    } else if (inquiry.parameter == Parameter::JB) {
+        send_all(script());
+    } else if (inquiry.parameter == Parameter::CP) {
+        send_all(counter_parameters(inquiry.argument));
+    } else if (const auto message = simple_answer(inquiry, now)) {
+        send(connection, *message, secured);
     }
-    send(connection, out, secured);
 }
 
-std::string PrinterModel::path_frame() const {
-    // The manual's examples send `\` of paths single, against its own escape rule (protocol, section 9). A path that
-    // would be read differently then is escaped nevertheless.
-    const auto escapes = settings_.profile.escapes;
-    const bool reads_back = job_.find('^') == std::string::npos && protocol::unescape(job_, escapes) == job_;
-    std::string out;
-    protocol::append_message(out, protocol::JobName{job_},
-                             reads_back && !settings_.habits.escaped_paths ? protocol::EscapeMode::none : escapes);
-    return out;
-}
-
-std::string PrinterModel::print_parameter(std::string_view argument) const {
-    protocol::ParameterReader in{argument};
-    const auto type = in.optional_number("a type", static_cast<std::uint32_t>(print_parameters_.size()));
-    return type && *type > 0 ? joined({*type, print_parameters_[*type - 1]}) : std::string{};
-}
-
-std::string PrinterModel::values_of(Parameter parameter, Instant now) const {
-    switch (parameter) {
+/// What one frame answers; none: the printer does not know the inquiry.
+std::optional<Message> PrinterModel::simple_answer(const protocol::InquiryMessage& inquiry, Instant now) {
+    switch (inquiry.parameter) {
     case Parameter::AC:
-        return joined({0});
-    case Parameter::DL:
-        return to_clock_values(clock_.read(now));
-    case Parameter::DS:
-        return joined({free_flash_kbyte});
-    case Parameter::ET: {
-        std::string text;
-        protocol::append_escaped(text, extern_text_, settings_.profile.escapes);
-        return text;
-    }
-    case Parameter::EV:
-        return joined({1, 0, 0});
-    case Parameter::EX:
-        return joined({speed_shown(settings_.speed), 0, speed_shown(max_speed_dm_per_min), 1, 0, 0, 0, 0, 0});
-    case Parameter::HS:
-        return joined({fall_time_ms, pressure_mbar, suction_pump_percent, diaphragm_position, 0, 0});
-    case Parameter::IC:
-        return is_jet2neo() ? joined({0, 0, 0}) : joined({0, 0, 0, 0, 0, 0});
-    case Parameter::MC:
-        return joined(
-            {0, 2, 0, 0, 0, fall_time_ms, pressure_mbar, 0, visco_correction, dot_frequency_khz, ink_number, 0, 0});
-    case Parameter::MS: {
-        const std::uint32_t ink_flows = nozzle_ == NozzleState::open ? 1 : 0;
-        return joined({1, 1, 1, 0, 0, 0, ink_flows, 0, motor_state(nozzle_), printing() ? 1U : 0U, 0});
-    }
-    case Parameter::OC:
-        return is_jet2neo() ? joined({1, 2, 3, 4}) : joined({1, 2, 3, 4, 0, 0, 0, 0});
-    case Parameter::SC:
-        return joined({service_interval_hours, service_interval_days});
-    case Parameter::SH:
-        return joined({operating_hours, last_service_hours, pack_date(last_service)});
+        return counters_.state();
     case Parameter::CC:
-    case Parameter::CM:
+        return counters();
+    case Parameter::DL:
+        return protocol::ClockTime{protocol::to_printer_time(clock_.read(now)), protocol::weekday_of(clock_.read(now))};
+    case Parameter::DS:
+        return protocol::FreeFlash{files().free_kbyte()};
+    case Parameter::ET:
+        return protocol::ExternText{extern_text_};
+    case Parameter::EX:
+        return external_states();
+    case Parameter::HS:
+        return health::hydraulic_state();
+    case Parameter::IC:
+        return input_configuration();
+    case Parameter::JL:
+        return protocol::JobName{job_.path};
+    case Parameter::MC:
+        return health::main_configuration();
+    case Parameter::MS:
+        return health::actor_states(nozzle_, printing());
+    case Parameter::OC:
+        return output_configuration();
+    case Parameter::PR:
+        return print_parameter(inquiry.argument);
+    case Parameter::RS: {
+        const auto status = machine_status();
+        job_changed_ = false;
+        return status;
+    }
+    case Parameter::SC:
+        return health::service_intervals();
+    case Parameter::SH:
+        return health::service_history();
+    case Parameter::SM:
+        return mail_status_answer();
+    case Parameter::VS:
+        return versions_of(settings_);
+    case Parameter::CM: // the manual says: see ?SM
     case Parameter::CO:
     case Parameter::CP:
     case Parameter::EL:
+    case Parameter::EV:
     case Parameter::FC:
     case Parameter::FL:
     case Parameter::GW:
     case Parameter::JB:
-    case Parameter::JL:
     case Parameter::MR:
     case Parameter::NR:
-    case Parameter::PR:
     case Parameter::RC:
-    case Parameter::RS:
-    case Parameter::SM:
     case Parameter::SW:
-    case Parameter::VS:
-        return {};
+        return std::nullopt;
     }
     assertion_failed("Parameter", __FILE__, __LINE__);
 }
 
-void PrinterModel::send(ConnectionId connection, std::string_view frame, bool secured) {
-    std::string bytes;
-    transmitter_.append(bytes, frame, secured);
-    effects_.emplace_back(Reply{connection, std::move(bytes)});
+std::optional<Message> PrinterModel::print_parameter(std::string_view argument) const {
+    protocol::ParameterReader in{argument};
+    const auto type = in.optional_number("a type", static_cast<std::uint32_t>(print_parameters_.size()));
+    if (!type || *type == 0) {
+        return std::nullopt;
+    }
+    return protocol::PrintParameter{protocol::PrintParameterType{*type}, print_parameters_[*type - 1]};
+}
+
+/// The manual says that `?CP` gives the working values, and not how it names the counter. Taken is what `=CP` begins
+/// with: an id and a limit; what is left out gives all.
+std::vector<Message> PrinterModel::counter_parameters(std::string_view argument) const {
+    using protocol::CounterLimit;
+    protocol::ParameterReader in{argument};
+    const auto wanted_id = in.optional_number("a counter id");
+    const auto wanted_limit = in.optional_number("1 or 2");
+    std::vector<Message> messages;
+    for (std::uint32_t id = 1; settings_.profile.counter_parameters && id <= counters_.size(); ++id) {
+        for (const auto limit : {CounterLimit::start, CounterLimit::end}) {
+            const bool wanted =
+                wanted_id.value_or(id) == id &&
+                wanted_limit.value_or(static_cast<std::uint32_t>(limit)) == static_cast<std::uint32_t>(limit);
+            if (wanted) {
+                messages.emplace_back(protocol::CounterParameter{id, limit, counters_.limit(id, limit).value_or(0)});
+            }
+        }
+    }
+    return messages;
+}
+
+/// `?JB`: the current job as the script that would make it.
+std::vector<Message> PrinterModel::script() const {
+    std::vector<Message> lines{protocol::ScriptLine{"BEGINLJSCRIPT"}};
+    for (const std::string& line : job_.lines) {
+        lines.emplace_back(protocol::ScriptLine{line});
+    }
+    lines.emplace_back(protocol::ScriptLine{"ENDLJSCRIPT"});
+    return lines;
+}
+
+/// `?GW`: the record loaded for the next print; without one the extern text, or the name of the job.
+std::vector<Message> PrinterModel::picture() const {
+    constexpr std::uint32_t job_id = 1;
+    const MailSlot* const loaded = fifo_.loaded();
+    const std::string& text = loaded != nullptr ? loaded->text : extern_text_.empty() ? job_.path : extern_text_;
+    std::vector<Message> messages;
+    for (const protocol::WysiwygLine& line : protocol::to_lines(draw(text, job_id, wysiwyg_start_))) {
+        messages.emplace_back(line);
+    }
+    messages.emplace_back(protocol::ActionMessage{protocol::Action::end_of_data});
+    return messages;
+}
+
+protocol::ExternalStates PrinterModel::external_states() const {
+    return {speed_shown(settings_.speed),        inputs_, speed_shown(health::max_speed_dm_per_min),
+            protocol::EncoderDirection::forward, "0",     false};
+}
+
+protocol::InputConfiguration PrinterModel::input_configuration() const {
+    protocol::InputConfiguration inputs;
+    for (std::size_t i = 0; i < settings_.profile.configured_inputs(); ++i) {
+        inputs.functions[i] = settings_.inputs.functions[i].value_or(protocol::InputFunction::disabled);
+    }
+    return inputs;
+}
+
+protocol::OutputConfiguration PrinterModel::output_configuration() const {
+    protocol::OutputConfiguration outputs;
+    for (std::size_t i = 0; i < settings_.profile.outputs(); ++i) {
+        outputs.signals[i] = i < configured_signals.size() ? configured_signals[i] : protocol::OutputSignal::disabled;
+    }
+    return outputs;
 }
 
 } // namespace linefeed::simulator

@@ -1,16 +1,14 @@
-// The printer's calendar clock (`?DL`, `=DL`) and its list of errors (`?EL`), both reckoned from the instants of the
-// driver: the model reads no clock of its own.
+// The printer's calendar clock (`?DL`, `=DL`) and its lists of errors and events (`?EL`, `?EV`), reckoned from the
+// instants of the driver: the model reads no clock of its own.
 #pragma once
 
 #include "base/time.hpp"
+#include "protocol/list_messages.hpp"
 
 #include <chrono>
 #include <cstddef>
-#include <cstdint>
-#include <deque>
-#include <optional>
-#include <span>
-#include <string>
+#include <utility>
+#include <vector>
 
 namespace linefeed::simulator {
 
@@ -21,36 +19,34 @@ public:
     explicit PrinterClock(std::chrono::sys_seconds at_zero)
         : at_zero_(at_zero) {}
 
-    [[nodiscard]] std::chrono::sys_seconds read(Instant now) const;
-    void set(std::chrono::sys_seconds wall, Instant now);
+    [[nodiscard]] std::chrono::sys_seconds read(Instant now) const {
+        return at_zero_ + std::chrono::floor<std::chrono::seconds>(now.time_since_epoch());
+    }
+    void set(std::chrono::sys_seconds wall, Instant now) {
+        at_zero_ = wall - std::chrono::floor<std::chrono::seconds>(now.time_since_epoch());
+    }
 
 private:
     std::chrono::sys_seconds at_zero_;
 };
 
-/// The seven values of `=DL`: year, month, weekday (0 = Sunday), day, hour, minute, second, separated by TAB.
-[[nodiscard]] std::string to_clock_values(std::chrono::sys_seconds wall);
-/// Reads them; the weekday follows from the date. std::nullopt unless all seven are there and are a date.
-[[nodiscard]] std::optional<std::chrono::sys_seconds>
-from_clock_values(std::span<const std::optional<std::uint32_t>> values);
-
-/// `date of last service` of `=SH`: bits 31-26 year−2000, 25-22 month, 21-17 day, 16-12 hour, 11-6 minute, 5-0 second.
-[[nodiscard]] std::uint32_t pack_date(std::chrono::sys_seconds wall);
-
-/// The errors raised so far, oldest first.
-class ErrorList {
+/// What happened last, oldest first.
+template <typename Entry>
+class Log {
 public:
     static constexpr std::size_t max_entries = 64;
-    static constexpr std::size_t entries_per_block = 32;
 
-    /// Adds an error; the oldest gives way when the list is full.
-    void add(std::chrono::sys_seconds wall, std::uint32_t code);
-    /// The payloads of the `=EL` blocks: first, total, entries in the block, `yy-mm-dd hh:mm:ss/errornumber` each. At
-    /// least one block.
-    [[nodiscard]] std::deque<std::string> blocks() const;
+    /// Adds an entry; the oldest gives way when the list is full.
+    void add(Entry entry) {
+        if (entries_.size() == max_entries) {
+            entries_.erase(entries_.begin());
+        }
+        entries_.push_back(std::move(entry));
+    }
+    [[nodiscard]] const std::vector<Entry>& entries() const { return entries_; }
 
 private:
-    std::deque<std::string> entries_;
+    std::vector<Entry> entries_;
 };
 
 } // namespace linefeed::simulator

@@ -23,10 +23,12 @@ PrinterModel::PrinterModel(PrinterSettings settings, Instant now)
     , transmitter_(settings_.habits.line_end)
     , fifo_(settings_.depth)
     , clock_(settings_.clock_at_zero)
+    , transfers_(FileSystem{settings_.profile}, settings_.block_errors)
     , now_(now)
     , cover_open_(settings_.cover_open)
-    , job_(settings_.job)
+    , job_(job_at(settings_.job).value_or(PrintJob{settings_.job, {}}))
     , total_prints_(settings_.total_prints) {
+    counters_.load(settings_.counters);
     power_up(now);
     transmitter_.set_length(settings_.length_on);
     transmitter_.set_echo(settings_.echo_on);
@@ -43,7 +45,14 @@ void PrinterModel::power_up(Instant now) {
     job_changed_ = true;
     error_ = {};
     print_ends_ = nozzle_done_ = initialised_ = switches_off_ = std::nullopt;
-    pending_job_ = pending_extern_text_ = std::nullopt;
+    fonts_loaded_ = panel_blocked_until_ = std::nullopt;
+    pending_job_.reset();
+    pending_extern_text_.reset();
+    script_.reset();
+    transfers_.clear();
+    outputs_.clear();
+    display_on_ = true;
+    wysiwyg_start_ = 0;
     awaited_crcs_.clear();
     stale_mail_status_ = mail_status();
     switch (settings_.power_up) {
@@ -117,6 +126,7 @@ void PrinterModel::change_state(MachineState machine, NozzleState nozzle, Instan
     machine_ = machine;
     nozzle_ = nozzle;
     effects_.emplace_back(StateChanged{now, machine_, nozzle_, cover_open_});
+    note_event(now);
 }
 
 void PrinterModel::start_printing(Instant now) {
@@ -191,7 +201,8 @@ void PrinterModel::show_error(std::int32_t raw, Instant now) {
         raw |= bit_24;
     }
     error_.raw = raw;
-    error_list_.add(clock_.read(now), error_.code_without_bit_24());
+    error_list_.add(
+        {protocol::to_printer_time(clock_.read(now)), {static_cast<std::int32_t>(error_.code_without_bit_24())}});
     switches_off_.reset();
     if (error_.switches_off()) {
         switches_off_ = now + settings_.switch_off_time;
@@ -203,13 +214,6 @@ void PrinterModel::raise_error(std::uint32_t code, Instant now) {
     advance(now);
     show_error(error_with_window(ErrorWindow::error, code), now);
     stop_printing(now);
-}
-
-void PrinterModel::press(protocol::Action action, Instant now) {
-    advance(now);
-    if (machine_ != MachineState::standby || action == protocol::Action::power_on) {
-        act(action, now);
-    }
 }
 
 void PrinterModel::open_cover(Instant now) {
@@ -234,12 +238,20 @@ void PrinterModel::close_cover(Instant now) {
 
 void PrinterModel::load_job(std::string path, Instant now) {
     advance(now);
-    finish_job_loading(std::move(path));
+    auto job = job_at(path);
+    finish_job_loading(job ? *std::move(job) : PrintJob{std::move(path), {}});
 }
 
-void PrinterModel::finish_job_loading(std::string path) {
-    job_ = std::move(path);
+void PrinterModel::finish_job_loading(PrintJob job) {
+    job_ = std::move(job);
     job_changed_ = true;
+    counters_.load(settings_.counters); // limits that the host has sent are lost (protocol, section 4, CP)
+}
+
+/// The job in the file of that path, if there is one.
+std::optional<PrintJob> PrinterModel::job_at(const std::string& path) const {
+    const std::string* const content = files().read(path);
+    return content == nullptr ? std::nullopt : std::optional{job_from_file(path, *content)};
 }
 
 void PrinterModel::power_cycle(Instant now) {

@@ -16,7 +16,7 @@ PrintGoOutcome PrinterModel::print_go(Instant now) {
         // The distance of the products is shorter than the print: a setting that no real line has. The print ends here.
         finish_print(now);
     }
-    if (!printing()) {
+    if (!printing() || (fonts_loaded_ && now < *fonts_loaded_)) {
         return PrintGoOutcome::not_printing;
     }
     if (const MailSlot* loaded = fifo_.loaded(); loaded != nullptr && loaded->arrived + settings_.margin <= now) {
@@ -81,6 +81,7 @@ void PrinterModel::begin_print(RecordNumber number, Instant now) {
     last_print_finished_ = false;
     ++product_counter_;
     ++total_prints_;
+    counters_.printed();
     print_ends_ = now + settings_.print_duration;
 }
 

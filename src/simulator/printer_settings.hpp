@@ -5,12 +5,15 @@
 #include "base/time.hpp"
 #include "protocol/messages.hpp"
 #include "protocol/profile.hpp"
+#include "simulator/file_transfers.hpp"
+#include "simulator/job_counters.hpp"
 
 #include <array>
 #include <chrono>
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace linefeed::simulator {
 
@@ -37,6 +40,7 @@ struct Habits {
     bool standby_silent = false;              ///< in standby not even `?RS` is answered
     bool abort_print_on_stop = false;         ///< a stop breaks off the running print, which stays "not finished"
     bool escaped_paths = false;               ///< `\` of paths is doubled in answers, as the escape rule demands
+    bool missing_jobs_refused = false;        ///< `=JL` with a path where no file is leaves the job as it is
     bool no_total_counter = false;            ///< `=CC` ends before the total print counter
     LineEnd line_end = LineEnd::cr;
 
@@ -44,7 +48,7 @@ struct Habits {
 };
 
 /// The names that set_habit() knows, in the order of help texts.
-inline constexpr std::array<std::string_view, 14> habit_names{"ignore-stop-at",
+inline constexpr std::array<std::string_view, 15> habit_names{"ignore-stop-at",
                                                               "stop-at-only-while-printing",
                                                               "stale-mail-status",
                                                               "sixth-value",
@@ -55,6 +59,7 @@ inline constexpr std::array<std::string_view, 14> habit_names{"ignore-stop-at",
                                                               "standby-silent",
                                                               "abort-print-on-stop",
                                                               "escaped-paths",
+                                                              "missing-jobs-refused",
                                                               "no-total-counter",
                                                               "crlf",
                                                               "lfcr"};
@@ -82,12 +87,16 @@ struct PrinterSettings {
     bool cover_open = false;
     std::uint32_t speed = 9;        ///< dm/min
     std::uint32_t total_prints = 0; ///< prints of the printer's life so far
+    std::string firmware;           ///< version that `?VS` tells; empty: one that fits the profile
     std::string serial_number = "104711";
     std::string job = "\\FFSDISK\\JOBS\\Testprint.job";
     std::chrono::sys_seconds clock_at_zero{
         std::chrono::sys_days{std::chrono::year{2024} / 1 / 1}}; ///< what the printer's clock shows at Instant{}
-    bool length_on = false;                                      ///< somebody has sent `!LN` before
-    bool echo_on = false;                                        ///< somebody has sent `!EM` before
+    std::vector<CounterDefinition> counters;                     ///< of whatever job is loaded
+    protocol::InputConfiguration inputs{}; ///< what the inputs do; those that are not set are disabled
+    BlockErrors block_errors{};
+    bool length_on = false;         ///< somebody has sent `!LN` before
+    bool echo_on = false;           ///< somebody has sent `!EM` before
     std::uint32_t block_length = 0; ///< somebody has sent `=FL` before: 1…2048; 0 = nobody
 };
 

@@ -76,8 +76,10 @@ void Simulator::start() {
             shut_down();
         }
     });
+    started_ = steady_now();
     wait_for_idleness();
-    move_conveyor(steady_now());
+    wait_for_fault();
+    move_conveyor(started_);
 }
 
 Result<void> Simulator::finish() {
@@ -92,6 +94,7 @@ void Simulator::shut_down() {
     conveyor_timer_.cancel();
     model_timer_.cancel();
     idle_timer_.cancel();
+    fault_timer_.cancel();
     signals_.cancel();
     io_.stop();
 }
@@ -102,6 +105,8 @@ void Simulator::on_connected(ConnectionId) {
 }
 
 void Simulator::on_frame(ConnectionId connection, const protocol::Frame& frame, Instant now) {
+    ++frames_;
+    cause_due_faults(now); // before the frame that is counted takes effect
     const bool was_empty = model_.fifo().records() == 0;
     model_.receive(connection, frame, now);
     if (lead_times_ && was_empty && model_.fifo().records() > 0) {
@@ -161,42 +166,6 @@ void Simulator::record(const Printed& print) {
     if (tape_) {
         const std::int64_t time_ns = wall_minus_steady_ns_ + print.time.time_since_epoch().count();
         tape_->write(tape_line(time_ns, print.number, to_utf8(print.text, settings_.charset)));
-    }
-}
-
-void Simulator::cause_due_faults(Instant now) {
-    auto& faults = settings_.faults;
-    for (std::size_t i = 0; i < faults.size();) {
-        if (faults[i].at_print <= statistics_.prints) {
-            const Fault due = faults[i];
-            faults.erase(faults.begin() + static_cast<std::ptrdiff_t>(i));
-            cause(due, now);
-        } else {
-            ++i;
-        }
-    }
-}
-
-void Simulator::cause(const Fault& fault, Instant now) {
-    switch (fault.kind) {
-    case Fault::Kind::operator_stop:
-        model_.press(protocol::Action::stop_print, now);
-        return;
-    case Fault::Kind::error:
-        model_.raise_error(fault.code, now);
-        return;
-    case Fault::Kind::cover_open:
-        model_.open_cover(now);
-        return;
-    case Fault::Kind::cut_connections:
-        server_.close_connections();
-        return;
-    case Fault::Kind::mute:
-        muted_ = true;
-        return;
-    case Fault::Kind::power_cycle:
-        model_.power_cycle(now);
-        return;
     }
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "simulator/conveyor.hpp"
+#include "simulator/fault.hpp"
 #include "simulator/lead_time_log.hpp"
 #include "simulator/printer_model.hpp"
 #include "simulator/run_statistics.hpp"
@@ -21,21 +22,6 @@
 #include <vector>
 
 namespace linefeed::simulator {
-
-/// What goes wrong when the printer has printed `at_print` products of this run.
-struct Fault {
-    enum class Kind {
-        operator_stop,   ///< the operator presses stop
-        error,           ///< error `code` stops the printing
-        cover_open,      ///< the cover is opened
-        cut_connections, ///< all connections are closed
-        mute,            ///< from now on nothing is answered
-        power_cycle,     ///< mains off and on
-    };
-    Kind kind = Kind::operator_stop;
-    std::uint64_t at_print = 0;
-    std::uint32_t code = 0; ///< for error
-};
 
 /// One run of the simulator.
 struct SimulatorSettings {
@@ -86,8 +72,10 @@ private:
     void carry_out(Instant now);
     void carry_out_one(Effect& effect);
     void record(const Printed& print);
+    [[nodiscard]] bool is_due(const Moment& moment, Instant now) const;
     void cause_due_faults(Instant now);
-    void cause(const Fault& fault, Instant now);
+    void cause(const Deed& deed, Instant now);
+    void wait_for_fault();
     void move_conveyor(Instant now);
     void wait_for_product();
     void product_at_sensor();
@@ -109,10 +97,13 @@ private:
     boost::asio::steady_timer conveyor_timer_{io_};
     boost::asio::steady_timer model_timer_{io_};
     boost::asio::steady_timer idle_timer_{io_};
+    boost::asio::steady_timer fault_timer_{io_};
     boost::asio::signal_set signals_{io_};
     std::int64_t wall_minus_steady_ns_ = 0;
     std::optional<Instant> model_timer_due_;
     std::optional<Instant> conveyor_timer_due_;
+    Instant started_{};
+    std::uint64_t frames_ = 0;   ///< received
     std::uint64_t products_ = 0; ///< PrintGos that found the printer printing
     bool muted_ = false;
 };

@@ -29,7 +29,7 @@ ONLY_HEADERS = {
 # Files that touch the outside world within a folder that is otherwise pure, by name without extension.
 EDGES = {
     "base": {"asio", "assert"},
-    "simulator": {"client_session", "fleet", "hiccup_watch", "server", "simulator", "steady_instant", "tape", "linefeed_sim_main"},
+    "simulator": {"client_session", "fleet", "hiccup_watch", "server", "simulator", "simulator_faults", "steady_instant", "sim_options", "sim_settings", "tape", "linefeed_sim_main"},
 }
 
 # No I/O, no clock, no random numbers, no thread: facts and time come in, what to do goes out.

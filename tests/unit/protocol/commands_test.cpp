@@ -1,4 +1,5 @@
-// The names of the protocol, against a list written down from the manual by hand.
+// The names of the protocol, against lists written down from the manual by hand.
+#include "protocol/command_table.hpp"
 #include "protocol/commands.hpp"
 
 #include <gtest/gtest.h>
@@ -46,10 +47,78 @@ TEST(Commands, shouldKnowEveryParameterOfTheManualBothWays) {
     EXPECT_EQ(parameter_from_code("VS"), Parameter::VS);
 }
 
+TEST(Commands, shouldKnowEveryFileCommandOfTheManualBothWays) {
+    constexpr std::string_view all = "RD DI DF RF FH FT FA";
+    std::size_t index = 0;
+    for (std::size_t at = 0; at < all.size(); at += 3, ++index) {
+        const std::string_view letters = all.substr(at, 2);
+        const auto command = file_command_from_code(letters);
+        ASSERT_TRUE(command) << letters;
+        EXPECT_EQ(static_cast<std::size_t>(*command), index) << letters;
+        EXPECT_EQ(code(*command), letters);
+        EXPECT_FALSE(description(*command).empty());
+    }
+    EXPECT_EQ(index, 7U);
+}
+
+/// The group characters and codes of a kind of row, e.g. "!GO !ST …".
+std::set<std::string> rows(Group group, bool (*wanted)(const Command&)) {
+    std::set<std::string> codes;
+    for (const Command& row : command_table) {
+        if (row.group == group && wanted(row)) {
+            codes.insert(std::string{row.code});
+        }
+    }
+    return codes;
+}
+
+std::set<std::string> words(std::string_view list) {
+    std::set<std::string> out;
+    for (std::size_t at = 0; at < list.size(); at += 3) {
+        out.insert(std::string{list.substr(at, 2)});
+    }
+    return out;
+}
+
+TEST(CommandTable, shouldHaveEveryInquiryOfTheManual) {
+    EXPECT_EQ(rows(Group::inquiry, [](const Command&) { return true; }),
+              words("AC CC DL DS EL ET EV EX GW HS IC JB JL MC MS OC PR RS SC SH SM VS"));
+}
+
+TEST(CommandTable, shouldSayWhoSendsEachParameter) {
+    const auto sent = [](Direction direction) {
+        static Direction wanted;
+        wanted = direction;
+        return rows(Group::parameter, [](const Command& row) { return row.direction == wanted; });
+    };
+    // ET and PR are host to printer in the manual's headings, and come back as the answers to ?ET and ?PR.
+    EXPECT_EQ(sent(Direction::both), words("CC CP DL ET JL NR PR"));
+    EXPECT_EQ(sent(Direction::to_printer), words("CM CO FL MR RC SW"));
+    EXPECT_EQ(sent(Direction::to_host), words("AC DS EL EV EX FC GW HS IC MC MS OC RS SC SH SM VS"));
+}
+
+TEST(CommandTable, shouldNameWhatMustNotHappenWhileAJobPrints) {
+    const auto destructive = [](const Command& row) { return row.risk == Risk::destructive; };
+    EXPECT_EQ(rows(Group::action, destructive), words("FA FF PF RM"));
+    EXPECT_EQ(rows(Group::file, destructive), words("DF"));
+    EXPECT_TRUE(rows(Group::inquiry, [](const Command& row) { return row.risk != Risk::none; }).empty());
+}
+
+TEST(CommandTable, shouldDescribeEachRowAndFollowTheSections) {
+    unsigned section = 0;
+    for (const Command& row : command_table) {
+        EXPECT_FALSE(row.description.empty()) << row.code;
+        EXPECT_GE(section_of(row.group), section) << row.code;
+        section = section_of(row.group);
+    }
+    EXPECT_EQ(section, 8U);
+}
+
 TEST(Commands, shouldNotKnowOtherCodes) {
-    for (const char* const letters : {"", "G", "GOO", "go", "XX", "SL"}) {
+    for (const char* const letters : {"", "G", "GOO", "go", "XX", "SL", "0W", "W/", "W:", "G ", " G", "G\xE4"}) {
         EXPECT_EQ(action_from_code(letters), std::nullopt) << letters;
         EXPECT_EQ(parameter_from_code(letters), std::nullopt) << letters;
+        EXPECT_EQ(file_command_from_code(letters), std::nullopt) << letters;
     }
     EXPECT_EQ(action_from_code("SM"), std::nullopt);
     EXPECT_EQ(parameter_from_code("GO"), std::nullopt);

@@ -1,32 +1,8 @@
 // Typed messages out of literal frames: the conversations of the manual and of real firmware.
-#include "protocol/frame_decoder.hpp"
-#include "protocol/messages.hpp"
-
-#include <gtest/gtest.h>
+#include "parsing.hpp"
 
 namespace linefeed::protocol {
 namespace {
-
-/// The message in a stream of one frame.
-Message parsed(std::string_view bytes, EscapeMode escapes = EscapeMode::backslash) {
-    FrameDecoder decoder{escapes};
-    const DecodeResult result = decoder.next(bytes);
-    const auto* const frame = std::get_if<Frame>(&result);
-    EXPECT_NE(frame, nullptr);
-    return frame != nullptr ? parse_message(*frame, escapes) : Message{};
-}
-
-template <typename T>
-T parsed_as(std::string_view bytes) {
-    const Message message = parsed(bytes);
-    EXPECT_TRUE(std::holds_alternative<T>(message)) << "alternative " << message.index();
-    const T* const typed = std::get_if<T>(&message);
-    return typed != nullptr ? *typed : T{};
-}
-
-std::string reason(std::string_view bytes) {
-    return parsed_as<MalformedMessage>(bytes).reason;
-}
 
 // --- RS
 
@@ -202,17 +178,16 @@ TEST(Messages, shouldCarryUnknownCommandsAlong) {
     EXPECT_EQ(parsed_as<UnknownMessage>("^0!GOAL\r"), unknown(Group::action, "GOAL"));
     EXPECT_EQ(parsed_as<UnknownMessage>("^0!\r"), unknown(Group::action, ""));
     EXPECT_EQ(parsed_as<UnknownMessage>("^0?SL\r"), unknown(Group::inquiry, "SL"));
-    EXPECT_EQ(parsed_as<UnknownMessage>("^0*ENDLJSCRIPT\r"), unknown(Group::script, "ENDLJSCRIPT"));
-    EXPECT_EQ(parsed_as<UnknownMessage>("^0$DI1\t00\r"), unknown(Group::file, "DI1\t00"));
-}
-
-TEST(Messages, shouldCarryKnownCommandsWithoutATypeAlong) {
-    EXPECT_EQ(parsed_as<UnknownMessage>("^0=NR3957421711\r"), (UnknownMessage{Group::parameter, "NR3957421711"}));
+    EXPECT_EQ(parsed_as<UnknownMessage>("^0$XX1\r"), unknown(Group::file, "XX1"));
+    EXPECT_EQ(parsed_as<UnknownMessage>("^0$\r"), unknown(Group::file, ""));
+    EXPECT_EQ(parsed_as<UnknownMessage>("^0=JB1\r"), unknown(Group::parameter, "JB1")) << "answered with script lines";
 }
 
 TEST(Messages, shouldNotTrustTheBeginningOfAnOverlongFrame) {
     const std::string excess(max_frame_bytes, '0');
     EXPECT_EQ(reason("^0=SM256\t0\t0\t0\t1\t" + excess + "\r"), "=SM: the frame is longer than any that is known");
+    EXPECT_EQ(reason("^0$RD" + excess + "\r"), "$RD: the frame is longer than any that is known");
+    EXPECT_EQ(reason("^0*LINE" + excess + "\r"), "*LI: the frame is longer than any that is known");
 }
 
 TEST(Messages, shouldSayStatesInWords) {

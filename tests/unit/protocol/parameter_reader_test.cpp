@@ -43,6 +43,32 @@ TEST(ParameterReader, shouldReadTheSignedAndTheUnsignedFormOf32Bits) {
     EXPECT_TRUE(in.ok());
 }
 
+TEST(ParameterReader, shouldReadNumbersBeyond32Bits) {
+    ParameterReader in{"9999999999\t10000000000\t"};
+    EXPECT_EQ(in.wide_number("a counter value", 9'999'999'999), 9'999'999'999U);
+    EXPECT_EQ(in.wide_number("a counter value", 9'999'999'999), 0U);
+    EXPECT_EQ(in.problem(), "parameter 2 is not a counter value: \"10000000000\"");
+}
+
+TEST(ParameterReader, shouldTakeASignedNumberThatMayBeMissing) {
+    ParameterReader in{"-3\t\t4294967295\tx"};
+    EXPECT_EQ(in.optional_signed_number("a correction"), -3);
+    EXPECT_EQ(in.optional_signed_number("a correction"), std::nullopt);
+    EXPECT_EQ(in.optional_signed_number("a correction"), -1);
+    EXPECT_TRUE(in.ok());
+    EXPECT_EQ(in.optional_signed_number("a correction"), std::nullopt);
+    EXPECT_EQ(in.problem(), "parameter 4 is not a correction: \"x\"");
+}
+
+TEST(ParameterReader, shouldGiveTheRestWithItsTabs) {
+    ParameterReader in{"1\ta\tb"};
+    EXPECT_EQ(in.number("a number"), 1U);
+    EXPECT_EQ(in.rest(), "a\tb");
+    EXPECT_EQ(in.rest(), "");
+    in.refuse("a text", "a\tb");
+    EXPECT_EQ(in.problem(), "parameter 3 is not a text: \"a?b\"");
+}
+
 TEST(ParameterReader, shouldNameTheFirstParameterThatCannotBeRead) {
     ParameterReader in{"256\tx\ty"};
     EXPECT_EQ(in.number("a FIFO depth"), 256U);

@@ -23,5 +23,60 @@ TEST(Profile, shouldNotGuess) {
     EXPECT_FALSE(profile_by_name(""));
 }
 
+TEST(Profile, shouldKnowWhatTheFamiliesHave) {
+    const Profile jet3 = profile_by_name("jet3").value();
+    const Profile jet3up = profile_by_name("jet3up").value();
+    const Profile jet2neo = profile_by_name("jet2neo").value();
+    EXPECT_EQ(jet3up.configured_inputs(), 6U);
+    EXPECT_EQ(jet2neo.configured_inputs(), 3U);
+    EXPECT_EQ(jet3.outputs(), 8U);
+    EXPECT_EQ(jet2neo.outputs(), 4U);
+    EXPECT_EQ(jet3up.job_select_inputs(), 10U);
+    EXPECT_EQ(jet2neo.job_select_inputs(), 8U);
+    EXPECT_EQ(jet3.graphic_height(), 32U);
+    EXPECT_EQ(jet2neo.graphic_height(), 24U);
+    EXPECT_TRUE(jet3.has_sd_card());
+    EXPECT_FALSE(jet3up.has_sd_card() || jet2neo.has_sd_card());
+    EXPECT_EQ(jet3up.usb_root(), "USB-Stick\\LJ3");
+    EXPECT_EQ(jet2neo.usb_root(), "USB-Stick\\LJet2neo");
+}
+
+Profile of(std::string_view type, std::string_view firmware) {
+    const auto profile = profile_for(type, firmware);
+    EXPECT_TRUE(profile) << type << ' ' << firmware;
+    return profile.value_or(Profile{});
+}
+
+TEST(Profile, shouldFollowFromTypeAndVersion) {
+    EXPECT_EQ(of("JET3", "V60.0.25.0").name, "jet3");
+    EXPECT_EQ(of("JET3up", "V62.0.9.0").name, "jet3up");
+    EXPECT_EQ(of("Leibinger Jet3Up Pro", "v62.0.9.0").name, "jet3up");
+    EXPECT_EQ(of("JET2neo", "V71.0.27.00").name, "jet2neo-v71");
+    EXPECT_EQ(of("JET2neo", "V71.0.27.01").name, "jet2neo");
+    EXPECT_EQ(of("JET2neo", "V75.0.11.2").name, "jet2neo");
+    for (const auto& [type, firmware] :
+         {std::pair{"JET4", "V1.0"}, std::pair{"", "V60.0.1"}, std::pair{"JET3", ""}, std::pair{"JET3", "V"},
+          std::pair{"JET3", "new"}, std::pair{"JET3", "V60.x"}}) {
+        EXPECT_FALSE(profile_for(type, firmware)) << type << ' ' << firmware;
+    }
+}
+
+TEST(Profile, shouldTakeEachThingFromTheVersionThatTheManualNames) {
+    EXPECT_TRUE(of("JET3", "V60.0.1.17").speed_in_metres);
+    EXPECT_FALSE(of("JET3", "V60.0.1.18").speed_in_metres);
+    EXPECT_TRUE(of("JET2neo", "V71.0.00.11").speed_in_metres);
+    EXPECT_FALSE(of("JET2neo", "V71.0.00.12").speed_in_metres);
+    EXPECT_FALSE(of("JET3", "V60.0.1.21").record_properties);
+    EXPECT_TRUE(of("JET3", "V60.0.1.22").record_properties);
+    EXPECT_FALSE(of("JET2neo", "V71.0.21.9").record_properties);
+    EXPECT_TRUE(of("JET2neo", "V71.0.22.00").record_properties);
+    EXPECT_FALSE(of("JET3", "V60.0.01.04D").output_control);
+    EXPECT_TRUE(of("JET3", "V60.0.25.0").output_control);
+    EXPECT_FALSE(of("JET2neo", "V75.0.11.2").output_control);
+    EXPECT_FALSE(of("JET3up", "V62.0.6.9").counter_parameters);
+    EXPECT_TRUE(of("JET3up", "V62.0.7.0").counter_parameters);
+    EXPECT_FALSE(of("JET3", "V62.0.7.0").counter_parameters);
+}
+
 } // namespace
 } // namespace linefeed::protocol

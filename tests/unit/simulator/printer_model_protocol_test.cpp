@@ -45,7 +45,7 @@ TEST(PrinterFraming, shouldEchoActionsAndParametersAsReceivedBeforeActing) {
     settings.echo_on = true;
     Printer printer{settings};
     EXPECT_EQ(printer.send("^0=MR1\ta\\^\xE4\r^0?SM\r^0!ZZ\r^0*x\r^0$RDx\r"),
-              "^0=MR1\ta\\^\xE4\r^0=SM256\t0\t0\t0\t1\r^0!ZZ\r");
+              "^0=MR1\ta\\^\xE4\r^0=SM256\t0\t0\t0\t1\r^0!ZZ\r^0$DI1\t00\r");
     EXPECT_EQ(printer.send("^0=NR1\r^0!GO\r"), "^0=NR1\r^0!GO\r^0=FC3523139330\r");
 }
 
@@ -124,7 +124,7 @@ TEST(PrinterCrc, shouldKeepTheAnnouncementsOfClientsApartAndForgetThem) {
 
 TEST(PrinterCrc, shouldLeaveFileTransferOut) {
     Printer printer;
-    EXPECT_EQ(printer.send("^0=NR1\r^0$RDx\r^0?SM\r"), "^0=SM256\t0\t0\t0\t1\r");
+    EXPECT_EQ(printer.send("^0=NR1\r^0$RDx\r^0?SM\r"), "^0$DI1\t00\r^0=SM256\t0\t0\t0\t1\r");
 }
 
 TEST(PrinterCrc, shouldSumWhatIsSentWithItsLength) {
@@ -243,7 +243,6 @@ TEST(PrinterInquiries, shouldAnswerWithTheNumberOfValuesOfTheManual) {
     EXPECT_EQ(values(printer.send("^0?SC\r")), 2);
     EXPECT_EQ(printer.send("^0?DS\r"), "^0=DS24576\r");
     EXPECT_EQ(printer.send("^0?AC\r"), "^0=AC0\r");
-    EXPECT_EQ(printer.send("^0?EV\r"), "^0=EV1\t0\t0\r");
     EXPECT_EQ(printer.send("^0?MS\r"), "^0=MS1\t1\t1\t0\t0\t0\t1\t0\t2\t0\t0\r");
     // 2023-06-15 09:00:00: 23 << 26 | 6 << 22 | 15 << 17 | 9 << 12
     EXPECT_EQ(printer.send("^0?SH\r"), "^0=SH1234\t1000\t1570672640\r");

@@ -189,7 +189,7 @@ TEST(Simulator, shouldStandStillWhileTheInterlockedPrinterDoesNotPrint) {
 TEST(Simulator, shouldCauseTheFaultsOrdered) {
     SimulatorSettings settings;
     settings.conveyor.rate = 500;
-    settings.faults = {{Fault::Kind::error, 2, 12113}, {Fault::Kind::cut_connections, 4, 0}};
+    settings.faults = {parse_fault("print 2 error 12113").value(), parse_fault("print 4 cut").value()};
     RunningSimulator simulator{settings};
     {
         Client client{simulator};

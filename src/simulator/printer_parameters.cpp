@@ -1,0 +1,113 @@
+// What clients set in the printer model: records, jobs, counters, parameters (protocol, sections 4, 5 and 7).
+#include "simulator/printer_model.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace linefeed::simulator {
+
+namespace error_code = protocol::error_code;
+
+void PrinterModel::take(const protocol::MailRecord& record, Instant now) {
+    if (fifo_.full()) {
+        show_error(error_with_window(ErrorWindow::warning, error_code::buffer_full), now);
+        return;
+    }
+    MailSlot& slot = fifo_.push();
+    slot.number = record.number;
+    slot.arrived = now;
+    slot.text.clear();
+    for (const std::string& field : record.fields) {
+        if (&field != &record.fields.front()) {
+            slot.text += '\t';
+        }
+        slot.text += field;
+    }
+    if (!settings_.profile.record_properties && !record.properties.empty()) {
+        slot.text += '\t'; // to old firmware the block is a field like any other
+        protocol::append_properties(slot.text, record.properties);
+    } else if (record.number == RecordNumber{}) {
+        slot.prints_left = std::max(record.properties.repetitions.value_or(1), 1U);
+    }
+}
+
+/// A record without a lawful number is an error; anything else that cannot be read is ignored.
+void PrinterModel::take(const protocol::MalformedMessage& message, Instant now) {
+    if (message.group == protocol::Group::parameter &&
+        message.payload.starts_with(protocol::code(protocol::Parameter::MR))) {
+        show_error(error_with_window(ErrorWindow::error, error_code::number_wrong), now);
+        stop_printing(now);
+    }
+}
+
+void PrinterModel::take(const protocol::StopAt& stop, Instant) {
+    const Habits& habits = settings_.habits;
+    if (!habits.ignore_stop_at && (printing() || !habits.stop_at_only_while_printing)) {
+        stop_at_ = stop.number;
+    }
+}
+
+void PrinterModel::take(const protocol::Counters& counters, Instant) {
+    product_counter_ = counters.product.value_or(product_counter_);
+    stop_after_ = counters.stop_after.value_or(stop_after_);
+}
+
+void PrinterModel::take(const protocol::CounterReset& reset, Instant) {
+    counters_.reset(reset);
+}
+
+void PrinterModel::take(const protocol::CounterParameter& parameter, Instant) {
+    if (settings_.profile.counter_parameters) {
+        counters_.set_limit(parameter);
+    }
+}
+
+void PrinterModel::take(const protocol::JobName& job, Instant now) {
+    auto found = job_at(job.path);
+    if (job.path.empty() || (!found && settings_.habits.missing_jobs_refused)) {
+        return;
+    }
+    pending_job_ = {now + settings_.job_loading_time, found ? *std::move(found) : PrintJob{job.path, {}}};
+}
+
+void PrinterModel::take(const protocol::ExternText& text, Instant now) {
+    pending_extern_text_ = {now + settings_.extern_text_time, text.text};
+}
+
+void PrinterModel::take(const protocol::PrintParameter& parameter, Instant) {
+    print_parameters_[static_cast<std::size_t>(parameter.type) - 1] = parameter.value;
+}
+
+void PrinterModel::take(const protocol::ClockTime& clock, Instant now) {
+    if (const auto wall = protocol::to_sys_seconds(clock.time)) {
+        clock_.set(*wall, now);
+    }
+}
+
+void PrinterModel::take(const protocol::BlockLength& length, Instant) {
+    transmitter_.set_block_length(length.bytes);
+}
+
+void PrinterModel::take(const protocol::OutputChange& change, Instant) {
+    if (settings_.profile.output_control && change.output <= settings_.profile.outputs()) {
+        outputs_.change(change);
+    }
+}
+
+void PrinterModel::take(const protocol::WysiwygStart& start, Instant) {
+    wysiwyg_start_ = start.x;
+}
+
+/// BEGIN deletes the file of the current job, END hands the new one to be printed.
+void PrinterModel::take(const protocol::ScriptLine& line, Instant now) {
+    if (line.is_begin()) {
+        script_ = PrintJob{std::string{extern_job_name}, {}};
+        job_.lines.clear();
+    } else if (script_ && line.is_end()) {
+        pending_job_ = {now + settings_.job_loading_time, *std::exchange(script_, std::nullopt)};
+    } else if (script_ && script_->lines.size() < max_script_lines) {
+        script_->lines.push_back(line.text);
+    }
+}
+
+} // namespace linefeed::simulator
