@@ -2,10 +2,12 @@
 // of the service, or over TCP with a token.
 #pragma once
 
+#include "api/json_text.hpp"
+#include "api/random.hpp"
+#include "api/service_address.hpp"
+#include "api/url.hpp"
 #include "base/failure.hpp"
 #include "base/time.hpp"
-
-#include <nlohmann/json.hpp>
 
 #include <cstdint>
 #include <filesystem>
@@ -17,21 +19,8 @@
 
 namespace linefeed::api {
 
-using Json = nlohmann::ordered_json;
-
-/// Where the service is: a socket file, or host and port.
-struct ServiceAddress {
-    std::filesystem::path socket; ///< empty = over TCP
-    std::string host;             ///< name or numeric address; IPv6 without brackets
-    std::uint16_t port = 0;
-
-    friend bool operator==(const ServiceAddress&, const ServiceAddress&) = default;
-};
-
-/// Reads `/PATH`, `unix:PATH`, `tcp://HOST:PORT`, `tcp://[IPV6]:PORT`. FailureKind::usage otherwise, saying what is
-/// expected.
-[[nodiscard]] Result<ServiceAddress> parse_service_address(std::string_view text);
-[[nodiscard]] std::string to_string(const ServiceAddress& address);
+class ClientConnection;
+struct WireRequest;
 
 struct ClientSettings {
     ServiceAddress address;
@@ -49,9 +38,7 @@ struct Reply {
     bool replayed = false; ///< of a POST: its key was known, and nothing was done again
 };
 
-/// `text` for a path or a query: everything but letters, digits and `-._~` as %NN.
-[[nodiscard]] std::string url_encoded(std::string_view text);
-/// 128 random bits in hex, for `Idempotency-Key`.
+/// Random, for `Idempotency-Key`.
 [[nodiscard]] std::string new_key();
 
 /// One connection, opened when it is needed and again when it is lost. A failure that the service has answered has the
@@ -81,8 +68,14 @@ public:
                                       const std::function<bool(const Failure&)>& on_lost);
 
 private:
-    class Connection;
-    std::unique_ptr<Connection> connection_;
+    [[nodiscard]] Result<Reply> exchange(const WireRequest& request, bool repeatable);
+    [[nodiscard]] WireRequest request(std::string_view method, std::string_view target, std::string_view key) const;
+    /// One connection of follow(), until it is lost. `after` moves on.
+    [[nodiscard]] Result<bool> follow_once(std::optional<std::uint64_t>& after,
+                                           const std::function<bool(const Json&)>& on_event);
+
+    ClientSettings settings_;
+    std::unique_ptr<ClientConnection> connection_;
 };
 
 } // namespace linefeed::api

@@ -54,6 +54,9 @@ struct Answer {
     bool replayed = false;              ///< given before to the same key
 };
 
+/// A problem as it is answered.
+[[nodiscard]] Answer to_answer(const Problem& problem);
+
 /// What handlers work with.
 struct Services {
     daemon::Operations& operations;

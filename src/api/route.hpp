@@ -17,12 +17,15 @@ enum class Method { get, post };
 /// The threads that carry a request out. What may take long must not keep the rest from being served, and nothing keeps
 /// a stop from being served.
 enum class Lane {
-    query,  ///< reads
-    change, ///< jobs, queue, start
-    stop,   ///< stops, and only these
-    slow,   ///< waits for a printer, or reads much
+    at_once, ///< the control thread itself: needs nobody
+    query,   ///< reads
+    change,  ///< jobs, queue, start
+    stop,    ///< stops, and only these
+    slow,    ///< waits for a printer, or reads much
+    import,  ///< reads files
+    disk,    ///< writes uploads; no route
 };
-inline constexpr std::size_t lanes = 4;
+inline constexpr std::size_t lanes = 7;
 
 /// Whether a POST needs an Idempotency-Key.
 enum class Key {

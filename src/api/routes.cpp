@@ -18,11 +18,11 @@ constexpr Route post(std::string_view path, Lane lane, Key key, Body body, declt
 }
 
 constexpr std::array table{
-    get("/livez", Role::anyone, Lane::query, handlers::live),
+    get("/livez", Role::anyone, Lane::at_once, handlers::live),
     get("/readyz", Role::anyone, Lane::query, handlers::ready, {"verbose"}),
     get("/version", Role::anyone, Lane::query, handlers::version),
     get("/metrics", Role::viewer, Lane::query, handlers::metrics, {}, media::metrics),
-    get("/api/v1/openapi.yaml", Role::anyone, Lane::query, handlers::openapi, {}, media::yaml),
+    get("/api/v1/openapi.yaml", Role::anyone, Lane::at_once, handlers::openapi, {}, media::yaml),
     get("/api/v1/status", Role::viewer, Lane::query, handlers::status),
     get("/api/v1/doctor", Role::viewer, Lane::query, handlers::doctor),
     post("/api/v1/reload", Lane::slow, Key::accepted, Body::none, handlers::reload),
@@ -37,7 +37,7 @@ constexpr std::array table{
     post("/api/v1/printers/{printer}/acknowledge", Lane::change, Key::accepted, Body::json, handlers::acknowledge),
     post("/api/v1/printers/{printer}/suspend", Lane::change, Key::accepted, Body::json, handlers::suspend),
     get("/api/v1/jobs", Role::viewer, Lane::query, handlers::jobs, {"printer", "phase", "after", "limit"}),
-    post("/api/v1/jobs", Lane::slow, Key::required, Body::import, handlers::import,
+    post("/api/v1/jobs", Lane::import, Key::required, Body::import, handlers::import,
          {"name", "layout", "printer", "autostart", "again"}),
     get("/api/v1/jobs/{job}", Role::viewer, Lane::query, handlers::job),
     get("/api/v1/jobs/{job}/doubt", Role::viewer, Lane::query, handlers::doubt),

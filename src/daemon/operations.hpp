@@ -131,12 +131,13 @@ struct Finding {
     std::string advice; ///< what to do; empty if ok
 };
 
-/// A frame of a conversation.
+/// A frame of a conversation; or consecutive mail records that went out together; or bytes that are no frame.
 struct FrameView {
     std::int64_t time_ns = 0; ///< wall time
     bool sent = false;        ///< by linefeed
-    std::string bytes;        ///< raw; at most 128 of them
-    std::uint32_t size = 0;   ///< of the whole frame
+    std::string bytes;        ///< raw; at most 128 of them; of several records, the first one's; none: no frame
+    std::uint32_t size = 0;   ///< of the whole frame with its CR, or of all the records
+    RecordRange records{};    ///< not empty: the numbers of the mail records, all of which this entry stands for
 };
 
 struct EventView {
@@ -283,12 +284,15 @@ public:
     [[nodiscard]] virtual std::vector<FolderView> folders() = 0;
     /// Those after `after`, ascending; at most `limit`.
     [[nodiscard]] virtual Result<std::vector<EventView>> events(std::uint64_t after, std::size_t limit) = 0;
+    /// The id of the newest event; 0 = there is none.
+    [[nodiscard]] virtual Result<std::uint64_t> last_event() = 0;
     /// Called, on any thread and without blocking, when there are events; the returned number ends it.
     [[nodiscard]] virtual std::uint64_t subscribe(std::function<void()> on_events) = 0;
     virtual void unsubscribe(std::uint64_t subscription) = 0;
     [[nodiscard]] virtual Result<std::vector<AuditView>> audit(std::uint64_t after, std::size_t limit) = 0;
 
     // What changes something. Each leaves a line in the audit log, also where it is refused.
+    /// Returns when the file is read to its end, or will not be opened again: an upload is removed then.
     [[nodiscard]] virtual Result<ImportAnswer> import(const Caller& caller, const ImportRequest& request) = 0;
     /// Behind the last of that printer's queue. A job that has printed belongs to its printer.
     [[nodiscard]] virtual Result<void> enqueue(const Caller& caller, spool::JobId id, std::string_view printer) = 0;
@@ -322,6 +326,7 @@ public:
         std::string body;
     };
     [[nodiscard]] virtual Result<std::optional<Remembered>> remembered(const Caller& caller, std::string_view key) = 0;
+    /// Durable at return; replaces what was remembered of this caller and key.
     [[nodiscard]] virtual Result<void> remember(const Caller& caller, std::string_view key,
                                                 const Remembered& answer) = 0;
 };

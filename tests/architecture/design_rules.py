@@ -15,6 +15,7 @@ MAY_USE = {
     "simulator": {"base", "protocol"},
     "config": {"base", "protocol", "feeder", "link"},
     "daemon": {"base", "protocol", "feeder", "session", "link", "spool", "intake", "config"},
+    "api": {"base", "protocol", "link", "spool", "config", "daemon"},
     "cli": {"base", "protocol", "feeder", "session", "link", "spool", "intake", "config", "daemon"},
 }
 
@@ -58,9 +59,10 @@ IMPURE_CODE = {
 # Outside library -> the only folders that may include it.
 LIBRARY_FOLDERS = {
     r"sqlite3(ext)?\.h": {"spool", "intake"},
-    r"boost/(asio|beast)(/.*|\.hpp)?": {"base", "link", "simulator", "daemon"},
+    r"boost/(asio|beast)(/.*|\.hpp)?": {"base", "link", "simulator", "daemon", "api"},
+    r"prometheus/.*": {"api"},
     r"CLI/.*": {"cli", "simulator"},
-    r"openssl/.*": {"spool"},
+    r"openssl/.*": {"spool", "api"},
     r"yaml-cpp/.*": {"config"},
-    r"nlohmann/.*": {"spool", "simulator", "config", "daemon", "cli"},
+    r"nlohmann/.*": {"spool", "simulator", "config", "daemon", "api", "cli"},
 }
