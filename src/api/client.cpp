@@ -30,10 +30,10 @@ std::string text_of(const Json& json, std::string_view member) {
     return found != json.end() && found->is_string() ? found->get<std::string>() : std::string{};
 }
 
-/// Of an answer that is a problem, or no answer of ours.
-Failure to_failure(const WireReply& reply) {
-    const Json problem = parsed_object(reply.body);
-    if (!problem.is_object() || media_type_of(reply.content_type) != media::problem) {
+/// Of an answer that is a problem, or no answer of ours: then `problem` is null.
+Failure to_failure(const WireReply& reply, Json& problem) {
+    problem = media_type_of(reply.content_type) == media::problem ? parsed_object(reply.body) : Json(nullptr);
+    if (!problem.is_object()) {
         return {FailureKind::internal, "the service answers with status " + std::to_string(reply.status) +
                                            ", which is not how linefeed answers: is that its address?"};
     }
@@ -72,6 +72,7 @@ WireRequest Client::request(std::string_view method, std::string_view target, st
 }
 
 Result<Reply> Client::exchange(const WireRequest& request, bool repeatable) {
+    problem_ = nullptr;
     if (!repeatable) {
         connection_->close(); // one that the service has closed meanwhile would leave open whether the request came in
     }
@@ -83,7 +84,7 @@ Result<Reply> Client::exchange(const WireRequest& request, bool repeatable) {
         return reply.error();
     }
     if (!is_success(reply->status)) {
-        return to_failure(*reply);
+        return to_failure(*reply, problem_);
     }
     return Reply{reply->status, Json::parse(reply->body, nullptr, false), reply->body, reply->replayed};
 }
@@ -132,6 +133,7 @@ Result<Reply> Client::upload(std::string_view target, const std::filesystem::pat
 
 Result<bool> Client::follow_once(std::optional<std::uint64_t>& after,
                                  const std::function<bool(const Json&)>& on_event) {
+    problem_ = nullptr;
     WireRequest wire = request("GET", "/api/v1/events/stream", "");
     if (after) {
         wire.fields.emplace_back("Last-Event-ID", std::to_string(*after));
@@ -142,7 +144,7 @@ Result<bool> Client::follow_once(std::optional<std::uint64_t>& after,
         return head.error();
     }
     if (head->status != 200) {
-        return to_failure(*head);
+        return to_failure(*head, problem_);
     }
     EventParser parser;
     for (;;) {

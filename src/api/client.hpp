@@ -66,6 +66,9 @@ public:
     [[nodiscard]] Result<void> follow(std::optional<std::uint64_t> after,
                                       const std::function<bool(const Json&)>& on_event,
                                       const std::function<bool(const Failure&)>& on_lost);
+    /// What the service has answered instead of what was asked, a Problem of openapi.yaml; null if the last request did
+    /// not fail, or was not answered.
+    [[nodiscard]] const Json& problem() const { return problem_; }
 
 private:
     [[nodiscard]] Result<Reply> exchange(const WireRequest& request, bool repeatable);
@@ -76,6 +79,7 @@ private:
 
     ClientSettings settings_;
     std::unique_ptr<ClientConnection> connection_;
+    Json problem_;
 };
 
 } // namespace linefeed::api

@@ -3,6 +3,9 @@
 #include "api/families.hpp"
 
 #include <chrono>
+#include <prometheus/counter.h>
+#include <prometheus/gauge.h>
+#include <prometheus/histogram.h>
 #include <prometheus/registry.h>
 #include <prometheus/text_serializer.h>
 

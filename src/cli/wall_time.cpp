@@ -22,13 +22,11 @@ std::string milliseconds_of(std::int64_t ns) {
     return text;
 }
 
-std::string local(std::int64_t ns, const char* format) {
+std::tm local(std::int64_t ns) {
     const std::time_t seconds = ns / ns_per_s;
     std::tm local{};
     ::localtime_r(&seconds, &local);
-    char text[40];
-    std::strftime(text, sizeof text, format, &local);
-    return text;
+    return local;
 }
 
 } // namespace
@@ -43,11 +41,17 @@ std::string format_wall_time(std::int64_t ns) {
 }
 
 std::string format_local_time(std::int64_t ns) {
-    return local(ns, "%Y-%m-%d %H:%M:%S");
+    const std::tm time = local(ns);
+    char text[40];
+    std::strftime(text, sizeof text, "%Y-%m-%d %H:%M:%S", &time);
+    return text;
 }
 
 std::string format_local_clock(std::int64_t ns) {
-    return local(ns, "%H:%M:%S") + milliseconds_of(ns);
+    const std::tm time = local(ns);
+    char text[16];
+    std::strftime(text, sizeof text, "%H:%M:%S", &time);
+    return text + milliseconds_of(ns);
 }
 
 } // namespace linefeed::cli

@@ -3,15 +3,22 @@
 #pragma once
 
 #include "api/client.hpp"
+#include "base/failure.hpp"
 
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace linefeed::client {
 
 using api::Json;
+
+/// `json` as a result. It converts to anything, so that Result cannot tell a value from a failure by itself.
+[[nodiscard]] inline Result<Json> json_result(Json json) {
+    return Result<Json>{boost::system::in_place_value, std::move(json)};
+}
 
 /// Null if it is not there.
 [[nodiscard]] const Json& member(const Json& object, std::string_view name);

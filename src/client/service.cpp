@@ -1,5 +1,7 @@
 #include "client/service.hpp"
 
+#include "client/json_fields.hpp"
+
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
@@ -139,7 +141,7 @@ Failure Service::explained(const Failure& failure) const {
             return {failure.kind, trouble.words + ": " + trouble.advice};
         }
     }
-    return {failure.kind, failure.message + ": " + start_it};
+    return failure;
 }
 
 Result<Json> Service::get(std::string_view target) {
@@ -147,7 +149,7 @@ Result<Json> Service::get(std::string_view target) {
     if (!reply) {
         return explained(reply.error());
     }
-    return std::move(reply->body);
+    return json_result(std::move(reply->body));
 }
 
 Result<std::vector<Json>> Service::list(std::string_view target, std::size_t limit) {
@@ -174,7 +176,7 @@ Result<Json> Service::post(std::string_view target, const Json& body) {
     if (!reply) {
         return explained(reply.error());
     }
-    return std::move(reply->body);
+    return json_result(std::move(reply->body));
 }
 
 Result<Json> Service::post_at_once(std::string_view target) {
@@ -182,7 +184,7 @@ Result<Json> Service::post_at_once(std::string_view target) {
     if (!reply) {
         return explained(reply.error());
     }
-    return std::move(reply->body);
+    return json_result(std::move(reply->body));
 }
 
 Result<Json> Service::upload(std::string_view target, const std::filesystem::path& file,
@@ -191,7 +193,7 @@ Result<Json> Service::upload(std::string_view target, const std::filesystem::pat
     if (!reply) {
         return explained(reply.error());
     }
-    return std::move(reply->body);
+    return json_result(std::move(reply->body));
 }
 
 Result<void> Service::follow(std::optional<std::uint64_t> after, const std::function<bool(const Json&)>& on_event,

@@ -43,7 +43,10 @@ public:
 
     Result<std::int64_t> verify() override {
         const auto verified = service_.post("/api/v1/ledger/verify");
-        return verified ? Result<std::int64_t>{number(*verified, "rows")} : verified.error();
+        if (!verified) {
+            return verified.error();
+        }
+        return number(*verified, "rows");
     }
 
 private:

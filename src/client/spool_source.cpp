@@ -92,7 +92,10 @@ Result<spool::Job> SpoolSource::find(std::int64_t id) {
 
 Result<Json> SpoolSource::view(const spool::Job& job) {
     const auto state = spool_.ledger_state(job.id);
-    return state ? Result<Json>{view_of(job, *state)} : state.error();
+    if (!state) {
+        return state.error();
+    }
+    return json_result(view_of(job, *state));
 }
 
 Result<std::vector<Json>> SpoolSource::jobs(const JobQuery& query) {
@@ -122,7 +125,10 @@ Result<std::vector<Json>> SpoolSource::jobs(const JobQuery& query) {
 
 Result<Json> SpoolSource::job(std::int64_t id) {
     const auto job = find(id);
-    return job ? view(*job) : job.error();
+    if (!job) {
+        return job.error();
+    }
+    return view(*job);
 }
 
 Result<std::vector<Json>> SpoolSource::history(std::int64_t id, std::optional<RecordRange> records) {

@@ -17,6 +17,8 @@ MAY_USE = {
     "daemon": {"base", "protocol", "feeder", "session", "link", "spool", "intake", "config"},
     "api": {"base", "protocol", "link", "spool", "config", "daemon"},
     "cli": {"base", "protocol", "feeder", "session", "link", "spool", "intake", "config", "daemon"},
+    "client": {"base", "protocol", "spool", "intake", "config", "daemon", "api", "cli"},
+    "linefeed": {"base", "protocol", "intake", "cli", "client"},
 }
 
 # Folder -> folder -> the only headers of the second that the first may include: the feeder knows the message types, never bytes.
@@ -61,8 +63,8 @@ LIBRARY_FOLDERS = {
     r"sqlite3(ext)?\.h": {"spool", "intake"},
     r"boost/(asio|beast)(/.*|\.hpp)?": {"base", "link", "simulator", "daemon", "api"},
     r"prometheus/.*": {"api"},
-    r"CLI/.*": {"cli", "simulator"},
+    r"CLI/.*": {"linefeed", "simulator"},
     r"openssl/.*": {"spool", "api"},
     r"yaml-cpp/.*": {"config"},
-    r"nlohmann/.*": {"spool", "simulator", "config", "daemon", "api", "cli"},
+    r"nlohmann/.*": {"spool", "simulator", "config", "daemon", "api", "cli", "client"},
 }
