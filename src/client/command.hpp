@@ -33,8 +33,8 @@ void show(const std::string& text);
 /// A line on stderr, made safe to show.
 void say(const std::string& message);
 
-/// Asks on the terminal whether to do it, and says so if it is not done; `yes` = it was said already. FailureKind::usage
-/// if there is nobody to ask.
+/// Asks on the terminal whether to do it, and says so if it is not done; `yes` = it was said already.
+/// FailureKind::usage if there is nobody to ask.
 [[nodiscard]] Result<bool> confirm(const std::string& question, bool yes, bool json);
 
 } // namespace linefeed::client

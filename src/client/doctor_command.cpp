@@ -46,17 +46,18 @@ ServiceWords ask_service(const ServicePlace& place, const std::string& version) 
 
 Json all_findings(const ServicePlace& place, const DoctorOptions& options, bool& reached) {
     Json findings = Json::array();
+    bool reachable = true;
     if (!place.address.socket.empty()) {
         findings.push_back(check_socket(place.address.socket));
+        reachable = text(findings.front(), "severity") == "ok";
     }
-    const ServiceWords service = ask_service(place, options.version);
+    const ServiceWords service = reachable ? ask_service(place, options.version) : ServiceWords{};
     reached = service.reached;
     const bool named = !options.config.empty();
     // A service on another machine has its surroundings there.
     if (!place.address.socket.empty() || named) {
-        const ConfigurationCheck configuration =
-            check_configuration(named ? options.config : std::filesystem::path{package_config}, named,
-                                place.address.socket);
+        const ConfigurationCheck configuration = check_configuration(
+            named ? options.config : std::filesystem::path{package_config}, named, place.address.socket);
         findings.push_back(configuration.finding);
         const auto spool = configuration.settings.value_or(config::Settings{}).spool;
         findings.push_back(check_disk(spool, disk_facts(spool.parent_path())));

@@ -44,7 +44,8 @@ Result<void> check_alone(const std::filesystem::path& file) {
 }
 
 std::string upload_target(const ImportOptions& options) {
-    std::string target = "/api/v1/jobs?name=" + api::url_encoded(options.name.empty() ? options.file.filename().string() : options.name);
+    std::string target =
+        "/api/v1/jobs?name=" + api::url_encoded(options.name.empty() ? options.file.filename().string() : options.name);
     for (const auto& [name, value] : {std::pair{"layout", &options.layout}, {"printer", &options.printer}}) {
         if (!value->empty()) {
             target += std::string{"&"} + name + '=' + api::url_encoded(*value);

@@ -59,8 +59,7 @@ std::string jobs_text(const std::vector<Json>& jobs, const Screen& screen) {
     columns.insert(columns.end(), {{"CREATED"}, {"NAME", false, true}, {"", false, true}});
     Table table{columns};
     for (const Json& job : jobs) {
-        std::vector<Cell> row{
-            {number_text(job, "id")}, phase_cell(job), {text(job, "printer")}, {of_records(job)}};
+        std::vector<Cell> row{{number_text(job, "id")}, phase_cell(job), {text(job, "printer")}, {of_records(job)}};
         if (doubt) {
             row.push_back({some(job, "in_doubt"), Colour::bad});
         }

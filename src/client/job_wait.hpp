@@ -23,8 +23,8 @@ struct WaitEnd {
     bool interrupted = false;
 };
 
-/// Waits until the job stands, or Ctrl-C, which ends the looking on and nothing else. Progress on stderr unless `quiet`.
-/// FailureKind::unreachable if the service is away for longer than service_patience.
+/// Waits until the job stands, or Ctrl-C, which ends the looking on and nothing else. Progress on stderr unless
+/// `quiet`. FailureKind::unreachable if the service is away for longer than service_patience.
 [[nodiscard]] Result<WaitEnd> wait_for_job(const Service& service, std::int64_t job, bool quiet);
 
 } // namespace linefeed::client

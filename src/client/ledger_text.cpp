@@ -100,8 +100,9 @@ std::string ledger_text(const Json& job, const std::vector<Json>& history) {
                cli::printable(text(segment, "state")) + "  (run " + number_text(segment, "run") + ")\n";
     }
     if (count_of(history, "in_doubt") > 0) {
-        return out + doubt_line(history) + " (linefeed settle, or linefeed print, with --last-printed, --printed or "
-                                           "--in-doubt)\n";
+        return out + doubt_line(history) +
+               " (linefeed settle, or linefeed print, with --last-printed, --printed or "
+               "--in-doubt)\n";
     }
     const std::string next = number_text(member(job, "next"), "first");
     return out + (next.empty() ? "nothing left to print\n" : "next to print: " + next + '\n');
@@ -113,12 +114,8 @@ Json ledger_json(const Json& job, const std::vector<Json>& history) {
         counts[state] = count_of(history, state);
     }
     const Json& records = member(job, "records");
-    return {{"job", number(job, "id")},
-            {"file", text(job, "source")},
-            {"first", number(records, "first")},
-            {"last", number(records, "last")},
-            {"counts", std::move(counts)},
-            {"segments", segments_of(history)}};
+    return {{"job", number(job, "id")},        {"file", text(job, "source")}, {"first", number(records, "first")},
+            {"last", number(records, "last")}, {"counts", std::move(counts)}, {"segments", segments_of(history)}};
 }
 
 std::string record_head(RecordFormat format) {

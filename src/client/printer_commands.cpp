@@ -112,10 +112,10 @@ ExitCode run_suspend(const SuspendOptions& options) {
         }
         auto done = change(service, options.printer, "/suspend", body);
         if (done && !options.printer.common.json) {
-            show(options.printer.printer +
-                 (options.suspend ? ": the panel is suspended for " + std::to_string(options.hold_s) +
-                                        " s; the same command again prolongs it, release gives it back\n"
-                                  : ": the panel is given back\n"));
+            show(options.printer.printer + (options.suspend
+                                                ? ": the panel is suspended for " + std::to_string(options.hold_s) +
+                                                      " s; the same command again prolongs it, release gives it back\n"
+                                                : ": the panel is given back\n"));
         }
         return done;
     });

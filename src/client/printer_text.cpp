@@ -101,7 +101,13 @@ std::string printers_text(const std::vector<Json>& printers, const Screen& scree
     std::string trouble;
     for (const Json& printer : printers) {
         const PrinterCells cells = printer_cells(printer);
-        table.add({cells.name, cells.state, cells.job, cells.queue, cells.rate, cells.fifo, cells.data_left,
+        table.add({cells.name,
+                   cells.state,
+                   cells.job,
+                   cells.queue,
+                   cells.rate,
+                   cells.fifo,
+                   cells.data_left,
                    {text(printer, "address")}});
         for (const std::string& line : printer_trouble(printer)) {
             trouble += cli::printable(text(printer, "name")) + ": " + line + '\n';

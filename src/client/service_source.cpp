@@ -1,6 +1,5 @@
-#include "client/job_source.hpp"
-
 #include "client/command.hpp"
+#include "client/job_source.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -66,7 +65,8 @@ Result<std::unique_ptr<JobSource>> open_job_source(const JobSourceOptions& optio
     }
     if (!options.spool.empty()) {
         if (!options.service.socket.empty() || !options.service.url.empty()) {
-            return Failure{FailureKind::usage, "--spool reads a file, --socket and --url ask a service: only one of them"};
+            return Failure{FailureKind::usage,
+                           "--spool reads a file, --socket and --url ask a service: only one of them"};
         }
         return spool_source(options.spool);
     }

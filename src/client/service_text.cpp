@@ -94,8 +94,8 @@ std::string folders_text(const std::vector<Json>& folders, const Screen& screen)
             more += name + ": " + cli::printable(message) + '\n';
         }
         for (const Json& file : items(folder, "staying")) {
-            more += name + ": " + cli::printable(text(file, "name")) + " stays for now: " +
-                    cli::printable(text(file, "why")) + '\n';
+            more += name + ": " + cli::printable(text(file, "name")) +
+                    " stays for now: " + cli::printable(text(file, "why")) + '\n';
         }
     }
     return table.text(screen) + more;

@@ -1,7 +1,6 @@
-#include "client/job_source.hpp"
-
 #include "api/views.hpp"
 #include "cli/record_text.hpp"
+#include "client/job_source.hpp"
 #include "client/json_fields.hpp"
 #include "spool/ledger_history.hpp"
 #include "spool/spool.hpp"
@@ -110,9 +109,8 @@ Result<std::vector<Json>> SpoolSource::jobs(const JobQuery& query) {
         if (!json) {
             return json.error();
         }
-        const bool wanted =
-            query.phases.empty() ||
-            std::find(query.phases.begin(), query.phases.end(), text(*json, "phase")) != query.phases.end();
+        const bool wanted = query.phases.empty() || std::find(query.phases.begin(), query.phases.end(),
+                                                              text(*json, "phase")) != query.phases.end();
         if (wanted && (query.printer.empty() || text(*json, "printer") == query.printer)) {
             views.push_back(std::move(*json));
         }

@@ -67,7 +67,8 @@ void Table::append_line(std::string& out, const std::vector<Cell>& row, const st
                         const Screen& screen) const {
     std::string blanks;
     for (std::size_t i = 0; i < row.size(); ++i) {
-        const std::string text = columns_[i].may_be_cut ? cut(row[i].text, std::max<std::size_t>(1, widths[i])) : row[i].text;
+        const std::string text =
+            columns_[i].may_be_cut ? cut(row[i].text, std::max<std::size_t>(1, widths[i])) : row[i].text;
         const std::string space(widths[i] - std::min(widths[i], display_width(text)), ' ');
         blanks += columns_[i].right ? space : "";
         if (!text.empty()) { // no blanks at the end of a line

@@ -76,7 +76,8 @@ Result<void> Watch::look_at_events() {
         last_event_ = newest - std::min<std::uint64_t>(newest, max_events);
     }
     return service_.each("/api/v1/events?limit=1000&after=" + std::to_string(*last_event_), [&](const Json& event) {
-        last_event_ = std::max(*last_event_, static_cast<std::uint64_t>(std::max<std::int64_t>(0, number(event, "id"))));
+        last_event_ =
+            std::max(*last_event_, static_cast<std::uint64_t>(std::max<std::int64_t>(0, number(event, "id"))));
         picture_.events.push_back(event);
         if (picture_.events.size() > max_events) {
             picture_.events.pop_front();

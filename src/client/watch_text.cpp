@@ -57,8 +57,16 @@ std::string table_of(const WatchPicture& picture, const Screen& screen) {
                  {"NAME", false, true}}};
     for (const Json& printer : picture.printers) {
         const PrinterCells cells = printer_cells(printer);
-        table.add({cells.name, cells.state, cells.job, {progress_of(picture, printer)}, cells.rate, cells.fifo,
-                   cells.fifo_lasts, cells.data_left, cells.queue, {name_of_job(picture, printer)}});
+        table.add({cells.name,
+                   cells.state,
+                   cells.job,
+                   {progress_of(picture, printer)},
+                   cells.rate,
+                   cells.fifo,
+                   cells.fifo_lasts,
+                   cells.data_left,
+                   cells.queue,
+                   {name_of_job(picture, printer)}});
     }
     return table.text(screen);
 }
@@ -88,7 +96,8 @@ std::string watch_text(const WatchPicture& picture, const Screen& screen) {
     const Screen plain{.colours = false, .columns = screen.columns, .rows = screen.rows};
     const std::size_t room = screen.rows > lines.size() ? screen.rows - lines.size() : 0;
     const std::size_t shown = std::min(room, picture.events.size());
-    for (auto event = picture.events.end() - static_cast<std::ptrdiff_t>(shown); event != picture.events.end(); ++event) {
+    for (auto event = picture.events.end() - static_cast<std::ptrdiff_t>(shown); event != picture.events.end();
+         ++event) {
         std::string line = event_text(*event, plain);
         line.pop_back();
         lines.push_back(cut(line, columns));

@@ -13,12 +13,12 @@
 namespace linefeed::client {
 
 struct WatchPicture {
-    std::string service;                ///< where it is
-    std::int64_t now_ns = 0;            ///< wall time
-    std::string trouble;                ///< why the rest is old; empty = it is not
-    std::vector<Json> printers;         ///< Printer objects
-    std::map<std::int64_t, Json> jobs;  ///< Job objects of those that are printed
-    std::deque<Json> events;            ///< the newest last
+    std::string service;               ///< where it is
+    std::int64_t now_ns = 0;           ///< wall time
+    std::string trouble;               ///< why the rest is old; empty = it is not
+    std::vector<Json> printers;        ///< Printer objects
+    std::map<std::int64_t, Json> jobs; ///< Job objects of those that are printed
+    std::deque<Json> events;           ///< the newest last
 };
 
 /// For a terminal: as many lines as it has rows at most, none longer than it is wide.

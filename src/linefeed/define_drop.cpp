@@ -46,12 +46,10 @@ CLI::App& add_drop(CLI::App& app, DropOptions& options, RawDropOptions& raw) {
 /// What is wrong with the options, or nothing.
 std::string finish_options(DropOptions& options, const RawDropOptions& raw) {
     if (raw.mode != "auto") {
-        options.settings.mode =
-            raw.mode == "poll" ? intake::WatchMode::poll : intake::WatchMode::inotify;
+        options.settings.mode = raw.mode == "poll" ? intake::WatchMode::poll : intake::WatchMode::inotify;
     }
     if (raw.rescan_s) {
-        options.settings.rescan =
-            std::chrono::duration_cast<Duration>(std::chrono::duration<double>{*raw.rescan_s});
+        options.settings.rescan = std::chrono::duration_cast<Duration>(std::chrono::duration<double>{*raw.rescan_s});
     }
     const auto settle = intake::parse_settle_rule(raw.settle);
     if (!settle) {

@@ -54,8 +54,8 @@ void add_stop(CLI::App& app, Commands& commands) {
     const auto options = std::make_shared<client::StopOptions>();
     CLI::App& stop = *app.add_subcommand("stop", "Stop a printer, and show where its job stands");
     stop.footer("Ends when the truth is in the ledger. Exit codes: 0 stopped, 6 and records are in doubt.");
-    CLI::Option* const name =
-        stop.add_option("PRINTER", options->printer, "Its name in the configuration; default: the only one that prints");
+    CLI::Option* const name = stop.add_option("PRINTER", options->printer,
+                                              "Its name in the configuration; default: the only one that prints");
     stop.add_flag("--all", options->all, "Every printer that prints")->excludes(name);
     add_common(stop, options->common);
     commands.push_back({&stop, [options] { return client::run_stop(*options); }});

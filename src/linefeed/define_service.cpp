@@ -22,8 +22,9 @@ void add_watch(CLI::App& app, Commands& commands) {
     const auto options = std::make_shared<client::WatchOptions>();
     const auto interval_s = std::make_shared<double>(1);
     CLI::App& watch = *app.add_subcommand("watch", "Look on at all printers, until Ctrl-C");
-    watch.footer("On a terminal the view is drawn again and again; otherwise there is a line for every change, or with\n"
-                 "-o json one for every look.");
+    watch.footer(
+        "On a terminal the view is drawn again and again; otherwise there is a line for every change, or with\n"
+        "-o json one for every look.");
     watch.add_option("--interval", *interval_s, "Seconds between two looks")
         ->capture_default_str()
         ->check(CLI::Range(0.1, 60.0));
