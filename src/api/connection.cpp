@@ -174,13 +174,12 @@ void Connection::on_deadline() {
 // The header
 
 void Connection::wait_for_request() {
-    rules_ = core_.rules;
     if (reader_ && reader_->buffer.size() > 0) { // the next request has come with the one before
         read_header();
         return;
     }
     reader_.reset(); // an idle connection costs little
-    enter(State::idle, rules_->request_timeout);
+    enter(State::idle, core_.rules->request_timeout);
     socket_.async_wait(Socket::wait_read, [self = shared_from_this()](const error_code& error) {
         if (error || self->state_ != State::idle) {
             self->close();
@@ -191,6 +190,7 @@ void Connection::wait_for_request() {
 }
 
 void Connection::read_header() {
+    rules_ = core_.rules; // those in force now, also on a connection that was opened before
     enter(State::header, rules_->request_timeout);
     begun_ = since_;
     method_.clear();

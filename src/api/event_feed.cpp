@@ -50,6 +50,9 @@ void EventFeed::start() {
             }
         });
     });
+    if (const auto newest = guarded([&] { return operations_.last_event(); })) {
+        last_ = kept_after_ = *newest;
+    }
     poll();
 }
 

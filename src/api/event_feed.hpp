@@ -43,6 +43,7 @@ public:
 
     EventFeed(boost::asio::io_context& context, daemon::Operations& operations, Workers& workers);
 
+    /// May wait for the store.
     void start();
     void stop();
 

@@ -34,6 +34,7 @@ namespace linefeed::api::handlers {
 [[nodiscard]] Outcome jobs(const Request& request, Services& services);
 [[nodiscard]] Outcome job(const Request& request, Services& services);
 [[nodiscard]] Outcome doubt(const Request& request, Services& services);
+[[nodiscard]] Outcome records(const Request& request, Services& services);
 [[nodiscard]] Outcome history(const Request& request, Services& services);
 [[nodiscard]] Outcome ledger_rows(const Request& request, Services& services);
 [[nodiscard]] Outcome import(const Request& request, Services& services);

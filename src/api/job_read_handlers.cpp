@@ -24,6 +24,25 @@ Checked<std::vector<daemon::JobPhase>> read_phases(std::string_view text) {
     return phases;
 }
 
+/// The parameter `records`; all there can be, if it is not given.
+Checked<RecordRange> wanted_records(const Query& query) {
+    const std::string* const text = query.find("records");
+    return text == nullptr ? Checked<RecordRange>{RecordRange::closed(RecordNumber{0}, RecordNumber::max())}
+                           : parse_records(*text);
+}
+
+/// The records that are in both; either may be empty.
+RecordRange common(const RecordRange& a, const RecordRange& b) {
+    return a.empty() || b.empty() ? RecordRange{}
+                                  : RecordRange::closed(std::max(a.first(), b.first()), std::min(a.last(), b.last()));
+}
+
+std::string records_target(const std::string& job, std::string_view what, RecordNumber first, RecordNumber last,
+                           std::size_t limit) {
+    return "/api/v1/jobs/" + job + '/' + std::string{what} + "?records=" + std::to_string(first.value()) + '-' +
+           std::to_string(last.value()) + "&limit=" + std::to_string(limit);
+}
+
 std::string jobs_target(const Query& query) {
     std::string target = "/api/v1/jobs";
     for (const std::string_view name : {"printer", "phase"}) {
@@ -83,6 +102,43 @@ Outcome doubt(const Request& request, Services& services) {
     return json_answer(to_json(*doubt));
 }
 
+Outcome records(const Request& request, Services& services) {
+    const auto id = job_id(request);
+    if (!id) {
+        return id.error();
+    }
+    const auto page = read_page(request.query);
+    if (!page) {
+        return page.error();
+    }
+    const auto wanted = wanted_records(request.query);
+    if (!wanted) {
+        return wanted.error();
+    }
+    const auto job = services.operations.job(*id);
+    if (!job) {
+        return to_problem(job.error());
+    }
+    if (!*job) {
+        return no_such_job(request.parameter);
+    }
+    const RecordRange asked = common(*wanted, (*job)->records);
+    const RecordRange shown{asked.first(), RecordCount{std::min<std::uint64_t>(asked.count().value(), page->limit)}};
+    std::vector<daemon::DoubtView::Record> found;
+    if (!shown.empty()) {
+        auto records = services.operations.records(*id, shown);
+        if (!records) {
+            return job_problem(records.error(), *id, services);
+        }
+        found = std::move(*records);
+    }
+    Json next;
+    if (shown.count() < asked.count()) {
+        next = records_target(request.parameter, "records", shown.last().next(), asked.last(), page->limit);
+    }
+    return json_answer({{"items", items_json(found)}, {"next", std::move(next)}});
+}
+
 Outcome history(const Request& request, Services& services) {
     const auto id = job_id(request);
     if (!id) {
@@ -92,15 +148,11 @@ Outcome history(const Request& request, Services& services) {
     if (!page) {
         return page.error();
     }
-    RecordRange records = RecordRange::closed(RecordNumber{0}, RecordNumber::max());
-    if (const std::string* const text = request.query.find("records")) {
-        const auto range = parse_records(*text);
-        if (!range) {
-            return range.error();
-        }
-        records = *range;
+    const auto records = wanted_records(request.query);
+    if (!records) {
+        return records.error();
     }
-    const auto stretches = services.operations.history(*id, records);
+    const auto stretches = services.operations.history(*id, *records);
     if (!stretches) {
         return job_problem(stretches.error(), *id, services);
     }
@@ -110,9 +162,8 @@ Outcome history(const Request& request, Services& services) {
     }
     Json next;
     if (stretches->size() > page->limit) {
-        next = "/api/v1/jobs/" + request.parameter +
-               "/ledger?records=" + std::to_string((*stretches)[page->limit].range.first().value()) + '-' +
-               std::to_string(records.last().value()) + "&limit=" + std::to_string(page->limit);
+        next = records_target(request.parameter, "ledger", (*stretches)[page->limit].range.first(), records->last(),
+                              page->limit);
     }
     return json_answer({{"items", std::move(items)}, {"next", std::move(next)}});
 }

@@ -41,6 +41,7 @@ constexpr std::array table{
          {"name", "layout", "printer", "autostart", "again"}),
     get("/api/v1/jobs/{job}", Role::viewer, Lane::query, handlers::job),
     get("/api/v1/jobs/{job}/doubt", Role::viewer, Lane::query, handlers::doubt),
+    get("/api/v1/jobs/{job}/records", Role::viewer, Lane::query, handlers::records, {"records", "limit"}),
     get("/api/v1/jobs/{job}/ledger", Role::viewer, Lane::slow, handlers::history, {"records", "limit"}),
     get("/api/v1/jobs/{job}/ledger/rows", Role::viewer, Lane::query, handlers::ledger_rows, {"after", "limit"}),
     post("/api/v1/jobs/{job}/queue", Lane::change, Key::accepted, Body::json, handlers::queue_job),

@@ -23,7 +23,7 @@ using boost::system::error_code;
 namespace {
 
 /// Of the Unix socket; operators must get in however many programs come over TCP.
-constexpr std::size_t max_unix_connections = 128;
+constexpr std::size_t max_unix_connections = 512;
 /// So many may be told at once that there are too many; more are closed without a word.
 constexpr std::size_t max_turned_away = 64;
 constexpr std::chrono::milliseconds accept_retry{100};

@@ -81,9 +81,14 @@ Outcome audit(const Request& request, Services& services) {
     if (!entries) {
         return to_problem(entries.error());
     }
+    const auto last = services.operations.last_audit();
+    if (!last) {
+        return to_problem(last.error());
+    }
     return json_answer(
         {{"items", items_json(*entries)},
-         {"next", next_page("/api/v1/audit", *page, entries->size(), entries->empty() ? 0 : entries->back().id)}});
+         {"next", next_page("/api/v1/audit", *page, entries->size(), entries->empty() ? 0 : entries->back().id)},
+         {"last_id", *last}});
 }
 
 Outcome folders(const Request& /*request*/, Services& services) {

@@ -83,8 +83,12 @@ Result<void> listen(stream_protocol::acceptor& acceptor, const config::ControlSe
     if (error) {
         return failed(error.message());
     }
+    // Not asked for without need: a hardened unit may not give files away.
+    struct stat status {};
+    const bool has_group = ::lstat(file.c_str(), &status) == 0 && status.st_gid == *group;
     constexpr mode_t owner_and_group = S_IRUSR | S_IWUSR | S_IRGRP | S_IWGRP;
-    if (::chown(file.c_str(), static_cast<uid_t>(-1), *group) != 0 || ::chmod(file.c_str(), owner_and_group) != 0) {
+    if ((!has_group && ::chown(file.c_str(), static_cast<uid_t>(-1), *group) != 0) ||
+        ::chmod(file.c_str(), owner_and_group) != 0) {
         const std::string why = system_message(errno);
         ::unlink(file.c_str());
         return failed("it cannot be given to the group " + settings.group + ": " + why);

@@ -157,16 +157,16 @@ Json to_json(const daemon::JobView& job) {
             {"created_by", visible(job.created_by)}};
 }
 
-Json to_json(const daemon::DoubtView& doubt) {
-    Json records = Json::array();
-    for (const auto& record : doubt.records) {
-        Json fields = Json::array();
-        for (const std::string& field : record.fields) {
-            fields.push_back(visible(field));
-        }
-        records.push_back({{"number", record.number.value()}, {"fields", std::move(fields)}});
+Json to_json(const daemon::DoubtView::Record& record) {
+    Json fields = Json::array();
+    for (const std::string& field : record.fields) {
+        fields.push_back(visible(field));
     }
-    return {{"count", doubt.count.value()}, {"records", std::move(records)}, {"hole", text_or_null(doubt.hole)}};
+    return {{"number", record.number.value()}, {"fields", std::move(fields)}};
+}
+
+Json to_json(const daemon::DoubtView& doubt) {
+    return {{"count", doubt.count.value()}, {"records", items_json(doubt.records)}, {"hole", text_or_null(doubt.hole)}};
 }
 
 Json to_json(const daemon::ImportAnswer& answer) {

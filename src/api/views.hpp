@@ -16,6 +16,7 @@ namespace linefeed::api {
 [[nodiscard]] Json to_json(const daemon::PrinterView& printer);
 [[nodiscard]] Json to_json(const daemon::FrameView& frame);
 [[nodiscard]] Json to_json(const daemon::JobView& job);
+[[nodiscard]] Json to_json(const daemon::DoubtView::Record& record);
 [[nodiscard]] Json to_json(const daemon::DoubtView& doubt);
 [[nodiscard]] Json to_json(const daemon::ImportAnswer& answer);
 [[nodiscard]] Json to_json(const daemon::FolderView& folder);

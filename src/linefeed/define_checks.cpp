@@ -1,5 +1,6 @@
 #include "cli/check_config_command.hpp"
 #include "client/doctor_command.hpp"
+#include "client/token_command.hpp"
 #include "linefeed/definitions.hpp"
 
 #include <memory>
@@ -36,11 +37,25 @@ void add_check_config(CLI::App& app, Commands& commands) {
     commands.push_back({&check, [options] { return cli::run_check_config(*options); }});
 }
 
+void add_token(CLI::App& app, Commands& commands) {
+    const auto options = std::make_shared<client::TokenOptions>();
+    CLI::App& token = *app.add_subcommand("token", "Tokens for programs that use the service over TCP");
+    token.require_subcommand(1);
+    CLI::App& made = *token.add_subcommand("new", "Make a token, and the line for http.tokens_file");
+    made.add_option("NAME", options->name, "Whose it is: letters, digits and ._-; stands in the audit log")->required();
+    made.add_option("--role", options->role, "viewer (looks at everything) or operator (and changes things)")
+        ->capture_default_str()
+        ->check(CLI::IsMember({"viewer", "operator"}));
+    add_output(made, options->json);
+    commands.push_back({&made, [options] { return client::run_token(*options); }});
+}
+
 } // namespace
 
 void define_checks(CLI::App& app, Commands& commands) {
     add_doctor(app, commands);
     add_check_config(app, commands);
+    add_token(app, commands);
 }
 
 } // namespace linefeed

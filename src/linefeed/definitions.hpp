@@ -37,7 +37,7 @@ void define_starts(CLI::App& app, Commands& commands);
 void define_printers(CLI::App& app, Commands& commands);
 /// status, watch, events, folders, audit, reload
 void define_service(CLI::App& app, Commands& commands);
-/// doctor, check-config
+/// doctor, check-config, token
 void define_checks(CLI::App& app, Commands& commands);
 
 // What several commands have: common_options.cpp
