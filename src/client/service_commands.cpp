@@ -4,7 +4,7 @@
 #include "client/printer_text.hpp"
 #include "client/service_text.hpp"
 
-#include <deque>
+#include <algorithm>
 #include <limits>
 
 namespace linefeed::client {
@@ -31,24 +31,21 @@ Result<ExitCode> status(Service& service, bool json) {
     return ExitCode::done;
 }
 
-/// The log is read from its beginning, since it is paged that way; only the newest lines are kept.
 Result<ExitCode> audit(Service& service, const AuditOptions& options) {
-    std::deque<Json> newest;
-    const auto read = service.each("/api/v1/audit?limit=1000", [&](const Json& entry) {
-        newest.push_back(entry);
-        if (newest.size() > options.limit) {
-            newest.pop_front();
-        }
-        return true;
-    });
-    if (!read) {
-        return read.error();
+    const auto first = service.get("/api/v1/audit?limit=1");
+    if (!first) {
+        return first.error();
     }
-    const std::vector<Json> entries{newest.begin(), newest.end()};
+    const auto newest = static_cast<std::size_t>(std::max<std::int64_t>(0, number(*first, "last_id")));
+    const std::size_t after = newest - std::min(newest, options.limit);
+    const auto entries = service.list("/api/v1/audit?limit=1000&after=" + std::to_string(after), everything);
+    if (!entries) {
+        return entries.error();
+    }
     if (options.common.json) {
-        show_json(entries);
+        show_json(*entries);
     } else {
-        show(audit_text(entries, stdout_screen()));
+        show(audit_text(*entries, stdout_screen()));
     }
     return ExitCode::done;
 }
