@@ -3,7 +3,7 @@
 #include "cli/print_report.hpp"
 #include "cli/progress_view.hpp"
 #include "cli/signals.hpp"
-#include "cli/wall_time.hpp"
+#include "daemon/wall_clock.hpp"
 
 #include <algorithm>
 #include <array>
@@ -125,7 +125,7 @@ Result<ExitCode> DropCommand::watch(intake::DropFolder& folder) {
 }
 
 Result<ExitCode> DropCommand::run() {
-    auto spool = spool::Spool::open(options_.spool, {wall_clock_ns, {}});
+    auto spool = spool::Spool::open(options_.spool, {daemon::wall_clock_ns, {}});
     if (!spool) {
         return spool.error();
     }

@@ -3,8 +3,8 @@
 #include "cli/dry_run.hpp"
 #include "cli/print_flow.hpp"
 #include "cli/print_report.hpp"
-#include "cli/record_text.hpp"
-#include "cli/wall_time.hpp"
+#include "daemon/record_text.hpp"
+#include "daemon/wall_clock.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -36,7 +36,7 @@ Result<ExitCode> PrintCommand::run() {
 }
 
 Result<ExitCode> PrintCommand::run(const std::filesystem::path& spool_path, const link::PrinterAddress& printer) {
-    auto spool = spool::Spool::open(spool_path, {wall_clock_ns, {}});
+    auto spool = spool::Spool::open(spool_path, {daemon::wall_clock_ns, {}});
     if (!spool) {
         return spool.error();
     }
@@ -60,7 +60,7 @@ Result<ExitCode> PrintCommand::run(const std::filesystem::path& spool_path, cons
     daemon::JobRunSettings settings = run_settings();
     settings.printer = printer;
     settings.endpoints = *endpoints;
-    settings.session.charsets = record_format(job_).charsets;
+    settings.session.charsets = daemon::record_format(job_).charsets;
     auto code = print(*spool, settings);
     import_.reset(); // before the spool
     return code;

@@ -1,7 +1,7 @@
 // What `linefeed print` was asked to do.
 #pragma once
 
-#include "cli/operator_word.hpp"
+#include "daemon/operator_word.hpp"
 #include "daemon/real_time.hpp"
 #include "intake/layout.hpp"
 
@@ -33,7 +33,7 @@ struct PrintOptions {
     std::uint32_t reply_timeout_ms = 2000;
 
     /// Settles records in doubt before anything is printed.
-    OperatorWord operator_word;
+    daemon::OperatorWord operator_word;
 
     bool json = false;
 };

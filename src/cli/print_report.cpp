@@ -1,8 +1,8 @@
 #include "cli/print_report.hpp"
 
-#include "cli/doubt_evidence.hpp"
+#include "daemon/doubt_evidence.hpp"
 #include "cli/progress_view.hpp"
-#include "cli/record_text.hpp"
+#include "daemon/record_text.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -53,7 +53,7 @@ Json range_json(const RecordRange& range) {
 
 Result<PrintReport> make_report(spool::Spool& spool, const spool::Job& job, RecordRange wanted,
                                 const feeder::Outcome& outcome, const std::string& detail) {
-    const RecordFormat format = record_format(job);
+    const daemon::RecordFormat format = daemon::record_format(job);
     const auto state = spool.ledger_state(job.id);
     if (!state) {
         return state.error();
@@ -81,7 +81,7 @@ Result<PrintReport> make_report(spool::Spool& spool, const spool::Job& job, Reco
             if (!page) {
                 return page.error();
             }
-            report.doubtful.push_back({number, record_fields(*page, number, format)});
+            report.doubtful.push_back({number, daemon::record_fields(*page, number, format)});
             if (number == range.last()) {
                 break;
             }
@@ -89,7 +89,7 @@ Result<PrintReport> make_report(spool::Spool& spool, const spool::Job& job, Reco
     }
     if (report.in_doubt > RecordCount{0}) {
         report.code = ExitCode::in_doubt;
-        const auto doubt = doubt_evidence(spool, job);
+        const auto doubt = daemon::doubt_evidence(spool, job);
         if (!doubt) {
             return doubt.error();
         }
@@ -128,7 +128,7 @@ void show_json(const PrintReport& report) {
 
 void show_doubtful(const PrintReport& report) {
     for (const DoubtfulRecord& record : report.doubtful) {
-        std::cout << "in doubt: " << record.number << "  " << printable(joined(record.fields, " | ")) << '\n';
+        std::cout << "in doubt: " << record.number << "  " << printable(daemon::joined(record.fields, " | ")) << '\n';
     }
     if (report.in_doubt.value() > report.doubtful.size()) {
         std::cout << "in doubt: " << report.in_doubt.value() - report.doubtful.size() << " more, see linefeed ledger "

@@ -34,7 +34,7 @@ struct PrintReport {
     RecordCount open; ///< issued, fate to be found out at the next start
     RecordCount in_doubt;
     std::vector<DoubtfulRecord> doubtful; ///< the first of them
-    /// Why the last product does not tell which of them are printed (DoubtEvidence::hole); empty = it does.
+    /// Why the last product does not tell which of them are printed (daemon::DoubtEvidence::hole); empty = it does.
     std::string doubt_hole;
     std::vector<intake::BadRow> bad_rows; ///< that have ended the import; the first of them
 };

@@ -1,7 +1,9 @@
 // Runs, one after the other, until nothing is left to print or something stands in the way, and the questions that only
 // an operator can answer in between.
+#include "cli/operator_name.hpp"
 #include "cli/print_flow.hpp"
 #include "cli/print_report.hpp"
+#include "daemon/other_jobs.hpp"
 
 #include <iostream>
 #include <poll.h>
@@ -9,39 +11,23 @@
 
 namespace linefeed::cli {
 
-/// Other jobs may have records in this printer whose fate only it knows, until it is flushed: they are settled first.
 /// The outcome is that of a printer which could not be asked; absent = nothing stands in the way.
 Result<std::optional<feeder::Outcome>> PrintCommand::settle_other_jobs(spool::Spool& spool,
                                                                        const daemon::JobRunSettings& settings) {
-    const auto open_jobs = spool.jobs_with_open_records();
-    if (!open_jobs) {
-        return open_jobs.error();
+    const auto hindrance = daemon::settle_other_jobs(
+        *threads_, spool, job_.id, settings, [this](daemon::JobRun& run, spool::JobId other) {
+            view_.message("job " + std::to_string(static_cast<std::int64_t>(other)) +
+                          " may have records in this printer: asking how far it came");
+            watch(run);
+        });
+    if (!hindrance) {
+        return hindrance.error();
     }
-    for (const spool::JobId other : *open_jobs) {
-        const auto open = daemon::find_open_issue(spool, other);
-        const auto other_job = spool.job(other);
-        if (!open || !other_job) {
-            return open ? other_job.error() : open.error();
-        }
-        if (other == job_.id || !*open || !*other_job || (*open)->printer != link::to_string(settings.printer)) {
-            continue;
-        }
-        view_.message("job " + std::to_string(static_cast<std::int64_t>(other)) +
-                      " may have records in this printer: asking how far it came");
-        daemon::JobRun run{*threads_, spool, **other_job, {}, *open, settings};
-        run.start();
-        watch(run);
-        run.join();
-        const auto left = daemon::find_open_issue(spool, other);
-        if (!left) {
-            return left.error();
-        }
-        if (*left) {
-            detail_ = run.detail();
-            return std::optional{run.outcome()};
-        }
+    if (!*hindrance) {
+        return std::optional<feeder::Outcome>{};
     }
-    return std::optional<feeder::Outcome>{};
+    detail_ = (*hindrance)->detail;
+    return std::optional{(*hindrance)->outcome};
 }
 
 /// Waits until a line stands at the terminal. False if Ctrl-C comes first.
@@ -67,7 +53,7 @@ Result<bool> PrintCommand::ask_operator(spool::Spool& spool) {
         return report.error();
     }
     show_doubtful(*report);
-    OperatorWord word;
+    daemon::OperatorWord word;
     if (report->doubt_hole.empty()) {
         std::cerr << "Which record is on the last product? Its number or text (nothing = decide later): ";
     } else {
@@ -84,7 +70,7 @@ Result<bool> PrintCommand::ask_operator(spool::Spool& spool) {
     } else {
         word.printed = answer;
     }
-    if (const auto settled = settle_by_operator(spool, job_, word); !settled) {
+    if (const auto settled = daemon::settle_by_operator(spool, job_, word, operator_name()); !settled) {
         return settled.error();
     }
     return true;
@@ -98,7 +84,7 @@ Result<bool> PrintCommand::settle_doubt(spool::Spool& spool) {
         return false;
     }
     word_counts_ = false;
-    if (const auto settled = settle_by_operator(spool, job_, options_.operator_word); !settled) {
+    if (const auto settled = daemon::settle_by_operator(spool, job_, options_.operator_word, operator_name()); !settled) {
         return settled.error();
     }
     return true;

@@ -1,7 +1,5 @@
 #include "cli/progress_view.hpp"
 
-#include "protocol/charset.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -30,13 +28,6 @@ std::string line_of(const ProgressView::State& state) {
         line += "  " + format_duration(*state.seconds_left) + " left";
     }
     return line;
-}
-
-/// Control characters, also those of one byte beyond ASCII, line separators, and what turns the direction of writing.
-bool commands_terminal(char32_t character) {
-    return character < 0x20 || (character >= 0x7F && character < 0xA0) || character == 0x061C ||
-           (character >= 0x200E && character <= 0x200F) || (character >= 0x2028 && character <= 0x202E) ||
-           (character >= 0x2066 && character <= 0x2069);
 }
 
 } // namespace
@@ -95,25 +86,6 @@ std::string format_duration(double seconds) {
         std::snprintf(text, sizeof text, "%llu s", static_cast<unsigned long long>(total));
     }
     return text;
-}
-
-std::string printable(const std::string& text) {
-    std::string result;
-    for (std::string_view rest{text}; !rest.empty();) {
-        const auto character = protocol::decode_utf8(rest);
-        const std::string_view bytes = rest.substr(0, character ? character->bytes : 1);
-        rest.remove_prefix(bytes.size());
-        if (character && !commands_terminal(character->code_point)) {
-            result += bytes;
-            continue;
-        }
-        for (const char byte : bytes) {
-            char escaped[8];
-            std::snprintf(escaped, sizeof escaped, "\\x%02X", static_cast<unsigned char>(byte));
-            result += escaped;
-        }
-    }
-    return result;
 }
 
 } // namespace linefeed::cli

@@ -1,6 +1,8 @@
 // Progress of long work on stderr: a bar that is drawn over on a terminal, a plain line now and then otherwise.
 #pragma once
 
+#include "protocol/printable.hpp"
+
 #include <chrono>
 #include <cstdint>
 #include <optional>
@@ -39,8 +41,6 @@ private:
 /// "1:02:03", "2:03", "7 s".
 [[nodiscard]] std::string format_duration(double seconds);
 
-/// Text from files and printers, safe to show on a terminal: control characters, characters that turn the direction of
-/// writing, and bytes that are no UTF-8 are written as \xNN.
-[[nodiscard]] std::string printable(const std::string& text);
+using protocol::printable; // whoever writes for people needs it
 
 } // namespace linefeed::cli

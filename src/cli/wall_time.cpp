@@ -1,15 +1,9 @@
 #include "cli/wall_time.hpp"
 
-#include <chrono>
 #include <cstdio>
 #include <ctime>
 
 namespace linefeed::cli {
-
-std::int64_t wall_clock_ns() {
-    return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::system_clock::now().time_since_epoch())
-        .count();
-}
 
 namespace {
 

@@ -3,6 +3,7 @@
 #include "cli/wall_time.hpp"
 #include "client/service.hpp"
 #include "config/load.hpp"
+#include "daemon/wall_clock.hpp"
 #include "intake/folder_watch.hpp"
 
 #include <cerrno>
@@ -138,7 +139,7 @@ Json check_disk(const std::filesystem::path& spool, const std::optional<DiskFact
 ClockFacts clock_facts() {
     timex state{};
     const int result = ::ntp_adjtime(&state);
-    return {cli::wall_clock_ns(), result >= 0 && result != TIME_ERROR && (state.status & STA_UNSYNC) == 0};
+    return {daemon::wall_clock_ns(), result >= 0 && result != TIME_ERROR && (state.status & STA_UNSYNC) == 0};
 }
 
 Json check_clock(const ClockFacts& facts) {

@@ -1,7 +1,7 @@
 #include "client/job_commands.hpp"
 
-#include "cli/record_ranges.hpp"
 #include "client/job_text.hpp"
+#include "daemon/record_ranges.hpp"
 
 namespace linefeed::client {
 
@@ -62,7 +62,7 @@ Result<bool> confirm_cancel(Service& service, const CancelOptions& options) {
 }
 
 Result<bool> confirm_reprint(Service& service, const ReprintOptions& options) {
-    const auto ranges = cli::parse_record_ranges(options.records);
+    const auto ranges = daemon::parse_record_ranges(options.records);
     if (!ranges) {
         return Failure{FailureKind::usage, "--records: " + ranges.error().message};
     }
@@ -78,7 +78,7 @@ Result<bool> confirm_reprint(Service& service, const ReprintOptions& options) {
         return name.error();
     }
     return confirm("print " + std::to_string(count.value()) + (count == RecordCount{1} ? " record" : " records") +
-                       " once more (" + cli::to_text(*ranges) + ") of " + *name,
+                       " once more (" + daemon::to_text(*ranges) + ") of " + *name,
                    options.yes, options.common.json);
 }
 

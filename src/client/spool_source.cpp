@@ -1,7 +1,7 @@
 #include "api/views.hpp"
-#include "cli/record_text.hpp"
 #include "client/job_source.hpp"
 #include "client/json_fields.hpp"
+#include "daemon/record_text.hpp"
 #include "spool/ledger_history.hpp"
 #include "spool/spool.hpp"
 
@@ -163,7 +163,7 @@ Result<void> SpoolSource::records(std::int64_t id, RecordRange records,
     if (!job) {
         return job.error();
     }
-    const cli::RecordFormat format = cli::record_format(*job);
+    const daemon::RecordFormat format = daemon::record_format(*job);
     std::optional<RecordPage> page;
     for (std::uint64_t i = 0; i < records.count().value(); ++i) {
         const RecordNumber number = records.first() + RecordCount{i};
@@ -174,7 +174,7 @@ Result<void> SpoolSource::records(std::int64_t id, RecordRange records,
             }
             page = std::move(*read);
         }
-        if (!on_record({{"number", number.value()}, {"fields", cli::record_fields(*page, number, format)}})) {
+        if (!on_record({{"number", number.value()}, {"fields", daemon::record_fields(*page, number, format)}})) {
             break;
         }
     }

@@ -11,8 +11,8 @@ namespace linefeed::client {
 
 namespace {
 
-using cli::InDoubtPolicy;
-using cli::OperatorWord;
+using daemon::InDoubtPolicy;
+using daemon::OperatorWord;
 
 /// The job as it is now, on stdout.
 Result<Json> show_job_now(Service& service, std::int64_t job, bool json) {

@@ -1,8 +1,8 @@
 // `linefeed start`, `resume` and `settle`: a job is set going, and records in doubt are settled before.
 #pragma once
 
-#include "cli/operator_word.hpp"
 #include "client/command.hpp"
+#include "daemon/operator_word.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -20,18 +20,18 @@ struct StartOptions {
 struct ResumeOptions {
     CommonOptions common;
     std::int64_t job = 0;
-    cli::OperatorWord word; ///< settles records in doubt before
+    daemon::OperatorWord word; ///< settles records in doubt before
     bool wait = false;
 };
 
 struct SettleOptions {
     CommonOptions common;
     std::int64_t job = 0;
-    cli::OperatorWord word; ///< not given: the records in doubt are shown, and on a terminal it is asked for
+    daemon::OperatorWord word; ///< not given: the records in doubt are shown, and on a terminal it is asked for
 };
 
 /// The SettleRequest of openapi.yaml. Precondition: word.given().
-[[nodiscard]] Json settle_request(const cli::OperatorWord& word);
+[[nodiscard]] Json settle_request(const daemon::OperatorWord& word);
 
 [[nodiscard]] ExitCode run_start(const StartOptions& options);
 [[nodiscard]] ExitCode run_resume(const ResumeOptions& options);

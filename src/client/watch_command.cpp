@@ -3,6 +3,7 @@
 #include "cli/signals.hpp"
 #include "cli/wall_time.hpp"
 #include "client/watch_text.hpp"
+#include "daemon/wall_clock.hpp"
 
 #include <algorithm>
 #include <array>
@@ -156,7 +157,7 @@ Result<ExitCode> Watch::run() {
     }
     const FullScreen full{!options_.common.json && stdout_screen().columns.has_value()};
     do {
-        picture_.now_ns = cli::wall_clock_ns();
+        picture_.now_ns = daemon::wall_clock_ns();
         show_picture(stdout_screen());
         if (!sleep()) {
             break;

@@ -44,6 +44,9 @@ void check_printer(const PrinterSettings& printer, Context& context) {
         const std::string set = context.was_read(key + ".poll_min") ? key + ".poll_min" : key + ".poll_max";
         context.refuse(set, "poll_min must not be longer than poll_max");
     }
+    if (printer.queue.chain == Chain::seamless) {
+        context.refuse(key + ".queue.chain", "\"seamless\" is not possible in this version: use \"stop\"");
+    }
 }
 
 void check_layout(const LayoutSettings& layout, Context& context) {

@@ -53,4 +53,23 @@ decltype(feeder::FeederSettings::acknowledge) Settings::acknowledged(const Print
     return numbers;
 }
 
+feeder::StoppingErrors Settings::stopping(const PrinterSettings& printer) const {
+    feeder::StoppingErrors stopping{.numbers = {}, .all_others = errors.unlisted == ErrorPolicy::stop};
+    const auto add = [&](std::uint32_t number, ErrorPolicy policy) {
+        if ((policy == ErrorPolicy::stop) != stopping.all_others) {
+            stopping.numbers.push_back(number);
+        }
+    };
+    for (const auto& [number, policy] : printer.errors) {
+        add(number, policy);
+    }
+    for (const ErrorEntry& entry : errors.entries) {
+        if (!printer.errors.contains(entry.number)) {
+            add(entry.number, entry.policy);
+        }
+    }
+    std::ranges::sort(stopping.numbers);
+    return stopping;
+}
+
 } // namespace linefeed::config

@@ -159,8 +159,10 @@ struct Settings {
     [[nodiscard]] const LayoutSettings* layout(std::string_view name) const;
     /// What to do about an error of that printer: its own policy, the table's, or that for unlisted numbers.
     [[nodiscard]] ErrorPolicy policy(const PrinterSettings& printer, const protocol::PrinterError& error) const;
-    /// The numbers that may be acknowledged before a start of that printer (FeederSettings::acknowledge).
+    /// The numbers that may be acknowledged at that printer (FeederSettings::acknowledge).
     [[nodiscard]] decltype(feeder::FeederSettings::acknowledge) acknowledged(const PrinterSettings& printer) const;
+    /// Those that stop that printer (FeederSettings::stop_on).
+    [[nodiscard]] feeder::StoppingErrors stopping(const PrinterSettings& printer) const;
 };
 
 } // namespace linefeed::config

@@ -2,14 +2,27 @@
 
 #include "base/assert.hpp"
 
+#include <boost/asio/bind_allocator.hpp>
+
+#include <chrono>
 #include <future>
 #include <unistd.h>
 
 namespace linefeed::daemon {
 
+namespace {
+thread_local bool feeds = false;
+constexpr auto beat_interval = std::chrono::milliseconds{100};
+} // namespace
+
+bool FeedThread::is_current() noexcept {
+    return feeds;
+}
+
 FeedThread::FeedThread(const RealTimeSettings& settings)
     : settings_(settings)
-    , door_(context_, ::dup(door_signal_.descriptor())) {}
+    , door_(context_, ::dup(door_signal_.descriptor()))
+    , beat_timer_(context_) {}
 
 FeedThread::~FeedThread() {
     if (thread_.joinable()) {
@@ -22,9 +35,11 @@ FeedThread::~FeedThread() {
 std::string FeedThread::start() {
     LINEFEED_ASSERT(!thread_.joinable());
     wait_for_guests();
+    beat();
     std::promise<std::string> granted;
     auto told = granted.get_future();
     thread_ = std::thread{[this, &granted] {
+        feeds = true;
         granted.set_value(make_real_time(settings_));
         context_.run();
     }};
@@ -37,6 +52,17 @@ void FeedThread::let_in(Guest& guest) {
         LINEFEED_ASSERT(waiting_.push(&guest));
     }
     door_signal_.notify();
+}
+
+void FeedThread::beat() {
+    beats_.fetch_add(1, std::memory_order_relaxed);
+    beat_timer_.expires_after(beat_interval);
+    const auto handler = [this](const boost::system::error_code& error) {
+        if (!error) {
+            beat();
+        }
+    };
+    beat_timer_.async_wait(boost::asio::bind_allocator(link::HandlerAllocator<>{beat_memory_}, handler));
 }
 
 void FeedThread::wait_for_guests() {

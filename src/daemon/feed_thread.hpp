@@ -4,12 +4,16 @@
 
 #include "daemon/event_signal.hpp"
 #include "daemon/real_time.hpp"
+#include "link/handler_memory.hpp"
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/posix/stream_descriptor.hpp>
+#include <boost/asio/steady_timer.hpp>
 #include <boost/lockfree/spsc_queue.hpp>
 
 #include <atomic>
+#include <cstdint>
+#include <memory>
 #include <mutex>
 #include <string>
 #include <thread>
@@ -36,6 +40,10 @@ public:
     [[nodiscard]] std::string start();
     /// Any thread but the feed thread. Precondition: fewer than max_waiting have not been let in yet.
     void let_in(Guest& guest);
+    /// Rises ten times a second as long as the thread gets on; any thread.
+    [[nodiscard]] std::uint64_t beats() const { return beats_.load(std::memory_order_relaxed); }
+    /// Whether the caller is on a feed thread: for the assertions of what has no place there.
+    [[nodiscard]] static bool is_current() noexcept;
     /// For the feed thread alone: it never locks. Other threads come in through rings and signals.
     [[nodiscard]] boost::asio::io_context& context() { return context_; }
 
@@ -43,6 +51,7 @@ public:
 
 private:
     void wait_for_guests();
+    void beat();
 
     RealTimeSettings settings_;
     boost::asio::io_context context_{BOOST_ASIO_CONCURRENCY_HINT_UNSAFE};
@@ -50,6 +59,9 @@ private:
     boost::asio::posix::stream_descriptor door_;
     std::mutex outside_; ///< among those who call let_in(); the feed thread never takes it
     boost::lockfree::spsc_queue<Guest*, boost::lockfree::capacity<max_waiting>> waiting_;
+    std::shared_ptr<link::HandlerMemory> beat_memory_ = std::make_shared<link::HandlerMemory>();
+    boost::asio::steady_timer beat_timer_;
+    std::atomic<std::uint64_t> beats_{0};
     std::atomic<bool> stopping_{false};
     std::thread thread_;
 };

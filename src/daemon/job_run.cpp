@@ -3,6 +3,7 @@
 #include <boost/asio/bind_allocator.hpp>
 #include <boost/asio/post.hpp>
 
+#include <algorithm>
 #include <unistd.h>
 
 namespace linefeed::daemon {
@@ -17,7 +18,11 @@ JobRun::JobRun(RunThreads threads, spool::Spool& spool, const spool::Job& job, R
     , settings_(settings)
     , store_(StoreWork{spool, job.id, LedgerKeeper{spool, job.id, wanted, link::to_string(settings.printer), open},
                        supply})
-    , session_(settings.session, make_plan(open, job.id, wanted)) {}
+    , session_(settings.session, make_plan(open, job.id, wanted), settings.frames) {
+    if (settings.meters != nullptr) {
+        measure_.emplace(*settings.meters, open ? open->facts.printed_through : RecordNumber{});
+    }
+}
 
 JobRun::~JobRun() {
     if (fed_) {
@@ -47,15 +52,34 @@ void JobRun::request_stop() {
     store_.replies_signal().notify();
 }
 
+namespace {
+
+bool went_wrong(feeder::OutcomeCode code) {
+    using feeder::OutcomeCode;
+    return code != OutcomeCode::finished && code != OutcomeCode::nothing_to_print &&
+           code != OutcomeCode::stop_requested;
+}
+
+} // namespace
+
 void JobRun::join() {
     fed_.wait(true);
     store_.join();
+    if (finished() && settings_.frames != nullptr) {
+        if (went_wrong(outcome_.code)) {
+            settings_.frames->keep();
+        }
+        settings_.frames = nullptr; // the next run writes there now
+    }
     if (!store_.failure().empty()) {
         detail_ = store_.failure();
     }
 }
 
 void JobRun::on_effect(const session::Effect& effect) {
+    if (measure_) {
+        measure_->on_effect(effect, session_.feeder());
+    }
     if (const auto* confirm = std::get_if<feeder::ConfirmPrinted>(&effect)) {
         confirm_ = *confirm;
         push_cumulative();
@@ -124,7 +148,11 @@ void JobRun::leave() {
     fed_.notify_all(); // by the address: the run may be gone already
 }
 
-void JobRun::on_progress() {
+void JobRun::on_progress(Instant at) {
+    publish_printer(at);
+    if (measure_) {
+        measure_->on_fact(session_, at);
+    }
     const feeder::Feeder& feeder = session_.feeder();
     const RecordRange& range = feeder.refill().range();
     if (range.empty()) {
@@ -136,6 +164,48 @@ void JobRun::on_progress() {
     rate_per_s_.store(feeder.rate(), std::memory_order_relaxed);
 }
 
+namespace {
+
+/// A MachineStatus in one word, so that a reader never sees half of it; the speed is left out.
+std::uint64_t pack(const protocol::MachineStatus& status) {
+    return std::uint64_t{static_cast<std::uint32_t>(status.error.raw)} << 32 |
+           std::uint64_t{status.cover_open ? 1U : 0U} << 16 |
+           std::uint64_t{static_cast<std::uint8_t>(status.nozzle)} << 8 | static_cast<std::uint8_t>(status.machine);
+}
+
+protocol::MachineStatus unpack(std::uint64_t packed) {
+    protocol::MachineStatus status;
+    status.error.raw = static_cast<std::int32_t>(packed >> 32);
+    status.cover_open = (packed >> 16 & 1U) != 0;
+    status.nozzle = static_cast<protocol::NozzleState>(packed >> 8 & 0xFFU);
+    status.machine = static_cast<protocol::MachineState>(packed & 0xFFU); // never 0
+    return status;
+}
+
+} // namespace
+
+void JobRun::publish_printer(Instant at) {
+    const std::uint64_t frames = session_.statistics().frames_received;
+    if (frames == frames_published_) {
+        return;
+    }
+    frames_published_ = frames;
+    heard_at_ns_.store(at.time_since_epoch().count(), std::memory_order_relaxed);
+    const feeder::Feeder& feeder = session_.feeder();
+    fifo_.store(std::uint64_t{feeder.mail().depth} << 32 | feeder.mail().entries, std::memory_order_relaxed);
+    if (feeder.phase() != feeder::Phase::identifying) {
+        machine_.store(pack(feeder.machine()), std::memory_order_relaxed);
+    }
+}
+
+RecordCount RunProgress::credit() const {
+    return RecordCount{fifo_depth} - std::min(RecordCount{fifo_depth}, level());
+}
+
+std::optional<double> RunProgress::time_to_empty_s() const {
+    return rate_per_s > 0 ? std::optional{static_cast<double>(level().value()) / rate_per_s} : std::nullopt;
+}
+
 RunProgress JobRun::progress() const {
     RunProgress progress;
     progress.printing = printing_;
@@ -144,7 +214,18 @@ RunProgress JobRun::progress() const {
                                              RecordNumber{static_cast<std::uint32_t>(range)});
     }
     progress.printed_through = RecordNumber{printed_through_.load(std::memory_order_relaxed)};
-    progress.sent_through = RecordNumber{sent_through_.load(std::memory_order_relaxed)};
+    // Written behind it and so perhaps newer; never seen smaller.
+    progress.sent_through =
+        std::max(progress.printed_through, RecordNumber{sent_through_.load(std::memory_order_relaxed)});
+    const std::uint64_t fifo = fifo_.load(std::memory_order_relaxed);
+    progress.fifo_depth = static_cast<std::uint32_t>(fifo >> 32);
+    progress.fifo_entries = static_cast<std::uint32_t>(fifo);
+    if (const std::uint64_t machine = machine_.load(std::memory_order_relaxed); machine != 0) {
+        progress.machine = unpack(machine);
+    }
+    if (const std::int64_t heard = heard_at_ns_.load(std::memory_order_relaxed); heard != 0) {
+        progress.heard_at = Instant{Duration{heard}};
+    }
     progress.rate_per_s = rate_per_s_.load(std::memory_order_relaxed);
     return progress;
 }

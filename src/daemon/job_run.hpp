@@ -3,6 +3,8 @@
 #pragma once
 
 #include "daemon/feed_thread.hpp"
+#include "daemon/frame_history.hpp"
+#include "daemon/run_measure.hpp"
 #include "daemon/store_thread.hpp"
 #include "feeder/outcome.hpp"
 #include "link/handler_memory.hpp"
@@ -26,6 +28,9 @@ struct JobRunSettings {
     std::vector<boost::asio::ip::tcp::endpoint> endpoints; ///< of the printer, resolved
     session::SessionSettings session;
     Duration connect_timeout = std::chrono::seconds{3};
+    // Of the printer, if anybody wants them; both live longer than the run.
+    LineMeters* meters = nullptr;
+    FrameHistory* frames = nullptr; ///< keep() is called when the run has ended otherwise than wanted
 };
 
 /// A glance at the run, from any thread.
@@ -35,6 +40,17 @@ struct RunProgress {
     RecordNumber printed_through;
     RecordNumber sent_through;
     double rate_per_s = 0;
+    std::uint32_t fifo_depth = 0;                   ///< entries, as the printer reports it
+    std::uint32_t fifo_entries = 0;                 ///< last reported
+    std::optional<protocol::MachineStatus> machine; ///< as last reported in this run
+    std::optional<Instant> heard_at;                ///< of the last frame; monotonic time of this machine
+
+    /// At most so many records are in the printer.
+    [[nodiscard]] RecordCount level() const { return sent_through - printed_through; }
+    /// Records that may still be sent, if they are at hand.
+    [[nodiscard]] RecordCount credit() const;
+    /// Until the FIFO is empty if nothing follows, at the measured rate; absent while the line stands.
+    [[nodiscard]] std::optional<double> time_to_empty_s() const;
 };
 
 /// What all runs of a process share.
@@ -74,7 +90,8 @@ private:
     void on_feed_thread() override;
     void on_effect(const session::Effect& effect) override;
     void on_unreachable(const std::string& reason) override;
-    void on_progress() override;
+    void on_progress(Instant at) override;
+    void publish_printer(Instant at);
     void wait_for_replies();
     void take_stop_request();
     void take_replies();
@@ -95,11 +112,13 @@ private:
     JobRunSettings settings_;
     Store store_;
     session::Session session_;
+    std::optional<RunMeasure> measure_;
     std::optional<Edge> edge_;
     std::atomic<bool> fed_{false}; ///< from start() until nothing of it is left on the feed thread
 
     std::optional<feeder::ConfirmPrinted> confirm_; ///< latest not yet handed to the store
     std::optional<feeder::AskIntent> intent_;
+    std::uint64_t frames_published_ = 0; ///< the last that the figures below include
 
     boost::lockfree::spsc_queue<feeder::Notice, boost::lockfree::capacity<64>> notices_;
     EventSignal news_;
@@ -109,6 +128,9 @@ private:
     std::atomic<std::uint32_t> printed_through_{0};
     std::atomic<std::uint32_t> sent_through_{0};
     std::atomic<double> rate_per_s_{0};
+    std::atomic<std::uint64_t> fifo_{0};       ///< depth << 32 | entries
+    std::atomic<std::uint64_t> machine_{0};    ///< packed; 0 = not known
+    std::atomic<std::int64_t> heard_at_ns_{0}; ///< 0 = never
     std::atomic<bool> finished_{false};
     feeder::Outcome outcome_;
     std::string detail_;

@@ -180,10 +180,10 @@ struct FolderView {
 };
 
 struct ImportRequest {
-    std::filesystem::path file; ///< absolute; readable by the service
-    std::string name;           ///< shown instead of the file's own, e.g. of an upload; empty = the file's
-    std::string layout;         ///< name in the settings; empty = the default layout
-    std::string printer;        ///< queue it there; empty = no queue
+    std::filesystem::path file{}; ///< absolute; readable by the service
+    std::string name{};           ///< shown instead of the file's own, e.g. of an upload; empty = the file's
+    std::string layout{};         ///< name in the settings; empty = the default layout
+    std::string printer{};        ///< queue it there; empty = no queue
     bool autostart = false;     ///< may start by itself if its printer's queue does so too
     bool again = false;         ///< import the same content once more, as a new job
 };
@@ -194,22 +194,22 @@ struct ImportAnswer {
     std::string report;     ///< JSON of intake::ImportReport: the rows that are bad
 };
 
-/// What an operator knows about records in doubt: exactly one is given. See cli/operator_word.hpp for what is refused.
+/// What an operator knows about records in doubt: exactly one is given. See daemon/operator_word.hpp for what is refused.
 struct SettleRequest {
     enum class Policy { skip, reprint };
-    std::optional<Policy> policy;
-    std::optional<std::string> last_printed; ///< number or text of the record on the last product
-    std::optional<std::string> printed;      ///< "N-M,N" or "none"
+    std::optional<Policy> policy{};
+    std::optional<std::string> last_printed{}; ///< number or text of the record on the last product
+    std::optional<std::string> printed{};      ///< "N-M,N" or "none"
 };
 
 struct ReprintRequest {
-    std::string records; ///< "N-M,N"
-    std::string reason;  ///< not empty
+    std::string records{}; ///< "N-M,N"
+    std::string reason{};  ///< not empty
 };
 
 struct JobFilter {
-    std::string printer;          ///< empty = all
-    std::vector<JobPhase> phases; ///< empty = all
+    std::string printer{};          ///< empty = all
+    std::vector<JobPhase> phases{}; ///< empty = all
     spool::JobId after{};         ///< newest first: those older than this one; 0 = from the newest
     std::size_t limit = 100;      ///< 1…1000
 };

@@ -13,6 +13,10 @@ constexpr int idle_wait_ms = 1000;
 /// Confirmations are gathered for this long, well below the 50 ms in which they must be durable.
 constexpr auto gather = std::chrono::milliseconds{10};
 constexpr auto checkpoint_interval = std::chrono::seconds{5};
+
+int wait_ms(std::chrono::steady_clock::duration left) {
+    return static_cast<int>(std::chrono::ceil<std::chrono::milliseconds>(left).count());
+}
 } // namespace
 
 StoreThread::StoreThread(spool::Spool& spool)
@@ -40,26 +44,42 @@ void StoreThread::add(Store& store) {
 void StoreThread::call(const std::function<void(spool::Spool&)>& what) {
     std::packaged_task<void()> task{[&] { what(spool_); }};
     auto done = task.get_future();
-    {
-        const std::lock_guard lock{outside_};
-        calls_.emplace_back([&task] { task(); });
-    }
-    signal_.notify();
+    add_call([&task] { task(); });
     done.get();
 }
 
-void StoreThread::let_in() {
-    std::vector<std::function<void()>> calls;
+void StoreThread::post(std::function<void(spool::Spool&)> what) {
+    add_call([this, what = std::move(what)] { what(spool_); });
+}
+
+void StoreThread::add_call(std::function<void()> what) {
     {
         const std::lock_guard lock{outside_};
-        stores_.insert(stores_.end(), arriving_.begin(), arriving_.end());
-        arriving_.clear();
-        writers_.reserve(stores_.size());
-        calls.swap(calls_);
+        calls_.push_back(std::move(what));
     }
-    for (const auto& call : calls) {
-        call();
+    signal_.notify();
+}
+
+void StoreThread::let_in() {
+    const std::lock_guard lock{outside_};
+    stores_.insert(stores_.end(), arriving_.begin(), arriving_.end());
+    arriving_.clear();
+    writers_.reserve(stores_.size());
+}
+
+/// At most one at a time, however many wait. False if none does.
+bool StoreThread::take_call() {
+    std::function<void()> call;
+    {
+        const std::lock_guard lock{outside_};
+        if (calls_.empty()) {
+            return false;
+        }
+        call = std::move(calls_.front());
+        calls_.pop_front();
     }
+    call();
+    return true;
 }
 
 bool StoreThread::take_requests() {
@@ -75,6 +95,12 @@ bool StoreThread::any(bool (StoreWork::*wants)() const) const {
 }
 
 void StoreThread::commit() {
+    const Clock::time_point begun = Clock::now();
+    write_pending();
+    commit_times_.record(Clock::now() - begun);
+}
+
+void StoreThread::write_pending() {
     writers_.clear();
     std::ranges::copy_if(stores_, std::back_inserter(writers_),
                          [](const Store* store) { return store->work().wants_commit(); });
@@ -134,37 +160,47 @@ void StoreThread::let_go_of_ended() {
     });
 }
 
+/// What is most urgent for the runs. False if there was nothing to do.
+bool StoreThread::work(Clock::time_point now) {
+    const bool commit_is_due = any(&StoreWork::wants_commit) && now - last_commit_ >= gather;
+    if (commit_is_due || any(&StoreWork::intent_waits)) {
+        commit();
+        last_commit_ = Clock::now();
+        return true;
+    }
+    if (take_turns(&StoreWork::wants_read_ahead, &StoreWork::read_ahead) ||
+        take_turns(&StoreWork::wants_supply_step, &StoreWork::supply_step)) {
+        return true;
+    }
+    if (now - last_checkpoint_ >= checkpoint_interval) {
+        checkpoint();
+        last_checkpoint_ = now;
+        return true;
+    }
+    return false;
+}
+
 void StoreThread::run() {
-    Clock::time_point last_commit = Clock::now();
-    Clock::time_point last_checkpoint = last_commit;
     while (true) {
+        beats_ += 1;
         let_in();
         {
             const std::lock_guard lock{outside_};
-            if (stopping_ && stores_.empty() && arriving_.empty()) {
+            if (stopping_ && stores_.empty() && arriving_.empty() && calls_.empty()) {
                 return;
             }
         }
-        const bool taken = take_requests();
+        bool worked = take_requests();
         const Clock::time_point now = Clock::now();
-        const bool wants_commit = any(&StoreWork::wants_commit);
-        if (any(&StoreWork::intent_waits) || (wants_commit && now - last_commit >= gather)) {
-            commit();
-            last_commit = Clock::now();
-        } else if (take_turns(&StoreWork::wants_read_ahead, &StoreWork::read_ahead)) {
-            // perhaps another
-        } else if (take_turns(&StoreWork::wants_supply_step, &StoreWork::supply_step)) {
-            // perhaps another
-        } else if (now - last_checkpoint >= checkpoint_interval) {
-            checkpoint();
-            last_checkpoint = now;
-        } else if (!taken) {
-            signal_.wait(wants_commit ? static_cast<int>(gather.count()) : idle_wait_ms);
-        }
+        worked = work(now) || worked;
+        worked = take_call() || worked;
         for (Store* store : stores_) {
             store->send_replies();
         }
         let_go_of_ended();
+        if (!worked) {
+            signal_.wait(any(&StoreWork::wants_commit) ? wait_ms(last_commit_ + gather - now) : idle_wait_ms);
+        }
     }
 }
 

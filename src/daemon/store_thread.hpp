@@ -3,10 +3,12 @@
 #pragma once
 
 #include "daemon/event_signal.hpp"
+#include "daemon/line_meters.hpp"
 #include "daemon/store.hpp"
 #include "spool/spool.hpp"
 
 #include <chrono>
+#include <deque>
 #include <functional>
 #include <mutex>
 #include <thread>
@@ -26,17 +28,28 @@ public:
     /// Serves `store` until its End request; Store::join() waits for that.
     void add(Store& store);
     /// Does something with the spool between two steps of the thread, and waits until it is done. What it throws is
-    /// thrown here.
+    /// thrown here. Only one of these comes between two steps for the runs, so each should take no longer than one of
+    /// those: some ms and one sync.
     void call(const std::function<void(spool::Spool&)>& what);
+    /// As call(), but does not wait. Precondition: it throws nothing.
+    void post(std::function<void(spool::Spool&)> what);
+    /// Rises at least once a second as long as the thread gets on, a call() of others included; any thread.
+    [[nodiscard]] std::uint64_t beats() const { return beats_; }
+    /// How long it took to write rows of the ledger, each time with its sync; any thread.
+    [[nodiscard]] const SharedHistogram& commit_times() const { return commit_times_; }
 
 private:
     using Clock = std::chrono::steady_clock;
 
     void run();
     void let_in();
+    void add_call(std::function<void()> what);
+    bool take_call();
+    bool work(Clock::time_point now);
     [[nodiscard]] bool take_requests();
     [[nodiscard]] bool any(bool (StoreWork::*wants)() const) const;
     void commit();
+    void write_pending();
     [[nodiscard]] bool commit_together();
     bool take_turns(bool (StoreWork::*wants)() const, void (StoreWork::*step)());
     void checkpoint();
@@ -44,13 +57,17 @@ private:
 
     spool::Spool& spool_;
     EventSignal signal_;
+    SharedHistogram commit_times_;
+    SharedCount beats_;
     std::vector<Store*> stores_;
     std::vector<Store*> writers_; ///< those that want a commit; has room for all
     std::size_t next_turn_ = 0;   ///< whose turn it is to have a page read or written
+    Clock::time_point last_commit_ = Clock::now();
+    Clock::time_point last_checkpoint_ = last_commit_;
 
     std::mutex outside_; ///< guards what follows; the feed thread never takes it
     std::vector<Store*> arriving_;
-    std::vector<std::function<void()>> calls_;
+    std::deque<std::function<void()>> calls_;
     bool stopping_ = false;
     std::thread thread_;
 };

@@ -13,17 +13,27 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 namespace linefeed::feeder {
+
+/// Which error numbers of the printer stop the line, whatever window it shows them in.
+struct StoppingErrors {
+    std::vector<std::uint32_t> numbers{}; ///< bits 24…0 of the error, ascending
+    bool all_others = false;              ///< not these, but all others
+
+    [[nodiscard]] bool contain(const protocol::PrinterError& error) const;
+};
 
 /// What the operator allows, and the beat.
 struct FeederSettings {
     PacingSettings pacing;
     /// `!NO` when the nozzle is closed, instead of refusing.
     bool open_nozzle = false;
-    /// Error codes that may be acknowledged before a start besides those of mailing, whose truth the ledger knows by
-    /// then.
+    /// Error codes that may be acknowledged: while it prints, and before a start besides those of mailing, whose truth
+    /// the ledger knows by then.
     BoundedList<std::uint32_t, 16> acknowledge;
+    StoppingErrors stop_on; ///< besides those that the printer shows as errors
     Duration status_interval = std::chrono::milliseconds{500}; ///< `?RS` while printing
     Duration retry_interval = std::chrono::milliseconds{20};   ///< between inquiries while waiting for a state
     /// From the first fill to `!GO`: the first product may come at once, and its record must lie in the FIFO 3 ms
@@ -115,7 +125,9 @@ public:
     [[nodiscard]] Phase phase() const { return phase_; }
     [[nodiscard]] const Refill& refill() const { return refill_; }
     [[nodiscard]] double rate() const { return pacing_.rate(); }
+    /// As last reported.
     [[nodiscard]] const protocol::MailStatus& mail() const { return mail_; }
+    [[nodiscard]] const protocol::MachineStatus& machine() const { return status_; }
 
 private:
     enum class StopPoint {
@@ -163,7 +175,9 @@ private:
     void go(Instant now, Actions& out);
     void start_mail(Instant now, Actions& out);
     void start_answered(Instant now, Actions& out);
+    [[nodiscard]] bool is_allowed(const protocol::PrinterError& error) const;
     [[nodiscard]] bool may_acknowledge(const protocol::PrinterError& error) const;
+    [[nodiscard]] bool stops(const protocol::PrinterError& error) const;
 
     // feeder_takeover.cpp: found printing the earlier run
     [[nodiscard]] bool may_take_over() const;
@@ -177,6 +191,7 @@ private:
 
     // feeder_printing.cpp: reports, refills and the stop point
     void print_status(Instant now, Actions& out);
+    void print_error(Instant now, Actions& out);
     void print_mail(Instant now, Actions& out);
     [[nodiscard]] bool follow(Instant now, Actions& out);
     void poll_on(Instant now);

@@ -78,12 +78,26 @@ void Feeder::check_ready(Instant now, Actions& out) {
     check_errors(now, out);
 }
 
-bool Feeder::may_acknowledge(const protocol::PrinterError& error) const {
+bool StoppingErrors::contain(const protocol::PrinterError& error) const {
+    const bool listed = std::ranges::binary_search(numbers, error.code()) ||
+                        std::ranges::binary_search(numbers, error.code_without_bit_24());
+    return listed != all_others;
+}
+
+bool Feeder::is_allowed(const protocol::PrinterError& error) const {
     const auto allowed = [this](std::uint32_t error_code) {
         return std::find(settings_.acknowledge.begin(), settings_.acknowledge.end(), error_code) !=
                settings_.acknowledge.end();
     };
-    return is_mailing_error(error) || allowed(error.code()) || allowed(error.code_without_bit_24());
+    return allowed(error.code()) || allowed(error.code_without_bit_24());
+}
+
+bool Feeder::may_acknowledge(const protocol::PrinterError& error) const {
+    return is_mailing_error(error) || is_allowed(error);
+}
+
+bool Feeder::stops(const protocol::PrinterError& error) const {
+    return error.display() == protocol::ErrorDisplay::error || settings_.stop_on.contain(error);
 }
 
 void Feeder::check_errors(Instant now, Actions& out) {
@@ -98,7 +112,7 @@ void Feeder::check_errors(Instant now, Actions& out) {
             ask(Parameter::RS, now, out);
             return;
         }
-        if (status_.error.display() == protocol::ErrorDisplay::error) {
+        if (stops(status_.error)) {
             end(OutcomeCode::error_pending, out);
             return;
         }
@@ -261,6 +275,10 @@ void Feeder::start_answered(Instant now, Actions& out) {
     if (!status_.error.none() && status_.error.raw != error_noticed_) {
         if (status_.error.display() == protocol::ErrorDisplay::error || is_mailing_error(status_.error)) {
             begin_judging(now, out); // stopped already: by an error, or behind the last record of a short run
+            return;
+        }
+        if (stops(status_.error)) {
+            begin_stop(OutcomeCode::printer_error, now, out);
             return;
         }
         out.push_back(Notice{NoticeCode::printer_warning, status_.error});

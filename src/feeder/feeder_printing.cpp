@@ -34,11 +34,26 @@ void Feeder::print_status(Instant now, Actions& out) {
         begin_stop(OutcomeCode::impossible_report, now, out); // by our credit there was room
         return;
     }
-    if (phase_ != Phase::printing || status_.error.none() || status_.error.raw == error_noticed_) {
+    if (phase_ == Phase::printing) {
+        print_error(now, out);
+    }
+}
+
+/// Each error once, until another comes or it was acknowledged. What mailing raises is never acknowledged while records
+/// are under way: it tells what has become of them.
+void Feeder::print_error(Instant now, Actions& out) {
+    if (status_.error.none() && acknowledged_ != 0) {
+        error_noticed_ = acknowledged_ = 0; // it may come again
+    }
+    if (status_.error.none() || status_.error.raw == error_noticed_) {
         return;
     }
     error_noticed_ = status_.error.raw;
-    if (status_.error.display() == protocol::ErrorDisplay::error) {
+    if (is_allowed(status_.error) && !is_mailing_error(status_.error)) {
+        acknowledged_ = status_.error.raw;
+        out.push_back(Notice{NoticeCode::error_acknowledged, status_.error});
+        out.push_back(Command{protocol::Action::acknowledge_errors});
+    } else if (stops(status_.error)) {
         begin_stop(OutcomeCode::printer_error, now, out);
     } else {
         out.push_back(Notice{NoticeCode::printer_warning, status_.error});

@@ -2,8 +2,8 @@
 
 namespace linefeed::intake {
 
-Result<std::optional<KnownBatch>> SpoolBatches::find(const spool::JobSpec& spec) {
-    const auto jobs = spool_.find_by_source_bytes(spec.source_sha256);
+Result<FoundBatch> find_batch(spool::Spool& spool, const spool::JobSpec& spec) {
+    const auto jobs = spool.find_by_source_bytes(spec.source_sha256);
     if (!jobs) {
         return jobs.error();
     }
@@ -12,18 +12,50 @@ Result<std::optional<KnownBatch>> SpoolBatches::find(const spool::JobSpec& spec)
             continue;
         }
         // Perhaps the last that import() did before a crash, so that it could not compare the records any more.
-        auto earlier = give_way(job);
+        auto earlier = earlier_job(spool, job);
         if (!earlier) {
             return earlier.error();
         }
-        return std::optional{*earlier ? KnownBatch{std::move(**earlier), false} : KnownBatch{job, true}};
+        return *earlier ? FoundBatch{KnownBatch{std::move(**earlier), false}, job.id}
+                        : FoundBatch{KnownBatch{job, true}, {}};
     }
     for (const spool::Job& job : *jobs) {
         if (job.spec.layout == spec.layout && job.spec.base == spec.base) {
-            return std::optional{KnownBatch{job, false}};
+            return FoundBatch{KnownBatch{job, false}, {}};
         }
     }
-    return std::optional<KnownBatch>{};
+    return FoundBatch{};
+}
+
+Result<std::optional<spool::Job>> earlier_job(spool::Spool& spool, const spool::Job& job) {
+    auto same = spool.find_by_content(job.content_sha256, job.spec.layout);
+    if (!same) {
+        return same.error();
+    }
+    if (same->empty() || same->front().id >= job.id) {
+        return std::optional<spool::Job>{};
+    }
+    const auto state = spool.ledger_state(job.id);
+    if (!state) {
+        return state.error();
+    }
+    if (!state->segments().empty()) {
+        return std::optional<spool::Job>{}; // somebody wants it printed again
+    }
+    return std::optional{std::move(same->front())};
+}
+
+Result<std::optional<KnownBatch>> SpoolBatches::find(const spool::JobSpec& spec) {
+    auto found = find_batch(spool_, spec);
+    if (!found) {
+        return found.error();
+    }
+    if (found->gives_way) {
+        if (auto removed = spool_.remove_job(*found->gives_way); !removed) {
+            return removed.error();
+        }
+    }
+    return std::move(found->known);
 }
 
 Result<BatchImport> SpoolBatches::import(RowSource& source, const spool::JobSpec& spec, const ImportOptions& options) {
@@ -32,38 +64,21 @@ Result<BatchImport> SpoolBatches::import(RowSource& source, const spool::JobSpec
         return outcome.error();
     }
     BatchImport batch{std::move(outcome->report), std::move(outcome->job), {}};
-    if (batch.job) {
-        auto earlier = give_way(*batch.job);
-        if (!earlier) {
-            return earlier.error();
+    if (!batch.job) {
+        return batch;
+    }
+    auto earlier = earlier_job(spool_, *batch.job);
+    if (!earlier) {
+        return earlier.error();
+    }
+    if (*earlier) {
+        if (auto removed = spool_.remove_job(batch.job->id); !removed) {
+            return removed.error();
         }
-        if (*earlier) {
-            batch.earlier = std::move(*earlier);
-            batch.job.reset();
-        }
+        batch.earlier = std::move(*earlier);
+        batch.job.reset();
     }
     return batch;
-}
-
-Result<std::optional<spool::Job>> SpoolBatches::give_way(const spool::Job& job) {
-    auto same = spool_.find_by_content(job.content_sha256, job.spec.layout);
-    if (!same) {
-        return same.error();
-    }
-    if (same->empty() || same->front().id >= job.id) {
-        return std::optional<spool::Job>{};
-    }
-    const auto state = spool_.ledger_state(job.id);
-    if (!state) {
-        return state.error();
-    }
-    if (!state->segments().empty()) {
-        return std::optional<spool::Job>{}; // somebody wants it printed again
-    }
-    if (auto removed = spool_.remove_job(job.id); !removed) {
-        return removed.error();
-    }
-    return std::optional{std::move(same->front())};
 }
 
 } // namespace linefeed::intake

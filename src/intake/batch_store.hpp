@@ -35,6 +35,16 @@ public:
                                                      const ImportOptions& options) = 0;
 };
 
+/// The job for a file of these bytes, see BatchStore::find(). A job that gives way to an earlier one is not removed yet:
+/// `gives_way` = it.
+struct FoundBatch {
+    std::optional<KnownBatch> known;
+    std::optional<spool::JobId> gives_way;
+};
+[[nodiscard]] Result<FoundBatch> find_batch(spool::Spool& spool, const spool::JobSpec& spec);
+/// The earlier job with the records of `job`, which has to go then; absent = it stays.
+[[nodiscard]] Result<std::optional<spool::Job>> earlier_job(spool::Spool& spool, const spool::Job& job);
+
 /// For whoever owns the spool. The spool must outlive it.
 class SpoolBatches final : public BatchStore {
 public:
@@ -45,9 +55,6 @@ public:
                                              const ImportOptions& options) override;
 
 private:
-    /// The earlier job with the records of `job`, which is removed then.
-    [[nodiscard]] Result<std::optional<spool::Job>> give_way(const spool::Job& job);
-
     spool::Spool& spool_;
 };
 

@@ -66,6 +66,7 @@ Result<bool> DropFolder::handle(Claimed& batch, Instant now) {
         return false;
     }
     if (!report) {
+        batch.left_over = true; // what was imported before the failure may be its own
         return report.error();
     }
     events_.reached(DropStep::imported);

@@ -11,11 +11,35 @@ namespace linefeed::intake {
 
 namespace {
 
+class SpoolTarget final : public ImportTarget {
+public:
+    explicit SpoolTarget(spool::Spool& spool)
+        : spool_(spool) {}
+
+    [[nodiscard]] Result<void> begin(const spool::JobSpec& spec) override {
+        auto job = spool_.begin_import(spec);
+        if (!job) {
+            return job.error();
+        }
+        job_ = std::move(*job);
+        return {};
+    }
+    [[nodiscard]] Result<void> add(RecordPage page) override { return job_->add(page); }
+    void refuse() override { job_.reset(); }
+    [[nodiscard]] Result<spool::Job> commit(std::string import_report) override {
+        return job_->commit(std::move(import_report));
+    }
+
+private:
+    spool::Spool& spool_;
+    std::optional<spool::JobImport> job_;
+};
+
 /// One import in progress.
 class Import {
 public:
-    Import(RowSource& source, spool::Spool& spool, const spool::JobSpec& spec, const ImportOptions& options)
-        : spool_(spool)
+    Import(RowSource& source, ImportTarget& target, const spool::JobSpec& spec, const ImportOptions& options)
+        : target_(target)
         , spec_(spec)
         , check_source_(options.check_source ? options.check_source : [&spec] { return check_unchanged(spec.source); })
         , pages_(source, spec.base, options) {}
@@ -25,11 +49,11 @@ public:
 private:
     [[nodiscard]] Result<ImportOutcome> finish();
 
-    spool::Spool& spool_;
+    ImportTarget& target_;
     const spool::JobSpec& spec_;
     std::function<Result<void>()> check_source_;
     PageMaker pages_;
-    std::optional<spool::JobImport> job_;
+    bool refused_ = false;
 };
 
 } // namespace
@@ -60,13 +84,13 @@ Result<ImportOutcome> Import::finish() {
     if (auto unchanged = check_source_(); !unchanged) {
         return unchanged.error();
     }
-    if (!job_) {
+    if (refused_) {
         report.records = 0; // stored
     }
     if (report.records == 0) {
         return ImportOutcome{std::move(report), std::nullopt};
     }
-    auto job = job_->commit(to_json(report));
+    auto job = target_.commit(to_json(report));
     if (!job) {
         return job.error();
     }
@@ -74,24 +98,24 @@ Result<ImportOutcome> Import::finish() {
 }
 
 Result<ImportOutcome> Import::run() {
-    auto job = spool_.begin_import(spec_);
-    if (!job) {
-        return job.error();
+    if (auto begun = target_.begin(spec_); !begun) {
+        return begun.error();
     }
-    job_ = std::move(*job);
-    RecordPage page;
     while (true) {
+        RecordPage page;
         const auto more = pages_.next(page);
         if (!more) {
             return more.error();
         }
-        if (pages_.refused()) {
-            job_.reset(); // removes what was stored; the rest is only checked
+        if (pages_.refused() && !refused_) {
+            refused_ = true;
+            target_.refuse(); // the rest is only checked
         }
         if (!*more) {
             return finish();
         }
-        if (auto added = job_ && !page.ends.empty() ? job_->add(page) : Result<void>{}; !added) {
+        const bool stored = !refused_ && !page.ends.empty();
+        if (auto added = stored ? target_.add(std::move(page)) : Result<void>{}; !added) {
             return added.error();
         }
     }
@@ -99,12 +123,18 @@ Result<ImportOutcome> Import::run() {
 
 } // namespace
 
-Result<ImportOutcome> import_source(RowSource& source, spool::Spool& spool, const spool::JobSpec& spec,
+Result<ImportOutcome> import_source(RowSource& source, ImportTarget& target, const spool::JobSpec& spec,
                                     const ImportOptions& options) {
     if (auto fits = check_charsets(source, options); !fits) {
         return fits.error();
     }
-    return Import{source, spool, spec, options}.run();
+    return Import{source, target, spec, options}.run();
+}
+
+Result<ImportOutcome> import_source(RowSource& source, spool::Spool& spool, const spool::JobSpec& spec,
+                                    const ImportOptions& options) {
+    SpoolTarget target{spool};
+    return import_source(source, target, spec, options);
 }
 
 ImportReport empty_report(const RowSource& source, const ImportOptions& options) {

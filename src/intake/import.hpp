@@ -60,10 +60,25 @@ struct ImportOutcome {
     std::optional<spool::Job> job;
 };
 
+/// Where an import puts its job: the spool itself, or whoever has it.
+class ImportTarget {
+public:
+    virtual ~ImportTarget() = default;
+    [[nodiscard]] virtual Result<void> begin(const spool::JobSpec& spec) = 0;
+    /// Pages in order, none of them empty.
+    [[nodiscard]] virtual Result<void> add(RecordPage page) = 0;
+    /// There will be no job: what was added goes.
+    virtual void refuse() = 0;
+    /// As JobImport::commit().
+    [[nodiscard]] virtual Result<spool::Job> commit(std::string import_report) = 0;
+};
+
 /// Reads `source` to its end into a new job. Fails with FailureKind::input if the source breaks off, has no rows or
 /// more than there are numbers, or if the file at spec.source.path is not as the fingerprint says when it has been
 /// read; with FailureKind::storage if the spool cannot take it; nothing is stored then.
 [[nodiscard]] Result<ImportOutcome> import_source(RowSource& source, spool::Spool& spool, const spool::JobSpec& spec,
+                                                  const ImportOptions& options);
+[[nodiscard]] Result<ImportOutcome> import_source(RowSource& source, ImportTarget& target, const spool::JobSpec& spec,
                                                   const ImportOptions& options);
 
 /// A file that grew or was replaced while it was read gives a job that is neither the old nor the new one:

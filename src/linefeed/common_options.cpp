@@ -110,7 +110,7 @@ std::string finish_layout(intake::Layout& layout, const RawLayout& raw) {
     return {};
 }
 
-void add_word(CLI::App& command, cli::OperatorWord& word, RawWord& raw) {
+void add_word(CLI::App& command, daemon::OperatorWord& word, RawWord& raw) {
     command.add_option("--last-printed", word.last_printed,
                        "Number or text of the record on the last product: settles records in doubt, where that tells");
     command.add_option(
@@ -123,15 +123,15 @@ void add_word(CLI::App& command, cli::OperatorWord& word, RawWord& raw) {
         ->check(CLI::IsMember({"ask", "skip", "reprint"}));
 }
 
-std::string finish_word(cli::OperatorWord& word, const RawWord& raw) {
-    word.policy = raw.in_doubt == "skip"      ? cli::InDoubtPolicy::skip
-                  : raw.in_doubt == "reprint" ? cli::InDoubtPolicy::reprint
-                                              : cli::InDoubtPolicy::ask;
+std::string finish_word(daemon::OperatorWord& word, const RawWord& raw) {
+    word.policy = raw.in_doubt == "skip"      ? daemon::InDoubtPolicy::skip
+                  : raw.in_doubt == "reprint" ? daemon::InDoubtPolicy::reprint
+                                              : daemon::InDoubtPolicy::ask;
     const bool last_printed = !word.last_printed.empty();
     if (last_printed && word.printed) {
         return "--last-printed and --printed exclude each other";
     }
-    if (word.policy != cli::InDoubtPolicy::ask && (last_printed || word.printed)) {
+    if (word.policy != daemon::InDoubtPolicy::ask && (last_printed || word.printed)) {
         return "--in-doubt " + raw.in_doubt + (last_printed ? " and --last-printed" : " and --printed") +
                " exclude each other";
     }

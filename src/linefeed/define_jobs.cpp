@@ -1,5 +1,5 @@
-#include "cli/record_ranges.hpp"
 #include "client/ledger_command.hpp"
+#include "daemon/record_ranges.hpp"
 #include "linefeed/definitions.hpp"
 
 #include <memory>
@@ -55,7 +55,7 @@ void add_ledger(CLI::App& app, Commands& commands) {
     add_source(ledger, options->source);
     commands.push_back({&ledger, [options, records] {
                             if (!records->empty()) {
-                                options->records = cli::parse_record_range(*records);
+                                options->records = daemon::parse_record_range(*records);
                                 if (!options->records) {
                                     return usage_error("--records " + *records + ": expected N or N-M");
                                 }

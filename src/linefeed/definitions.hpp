@@ -3,8 +3,8 @@
 #pragma once
 
 #include "cli/exit_code.hpp"
-#include "cli/operator_word.hpp"
 #include "client/command.hpp"
+#include "daemon/operator_word.hpp"
 #include "intake/layout.hpp"
 
 #include <CLI/CLI.hpp>
@@ -75,7 +75,7 @@ void add_layout(CLI::App& command, intake::Layout& layout, RawLayout& raw);
 struct RawWord {
     std::string in_doubt{"ask"};
 };
-void add_word(CLI::App& command, cli::OperatorWord& word, RawWord& raw);
-[[nodiscard]] std::string finish_word(cli::OperatorWord& word, const RawWord& raw);
+void add_word(CLI::App& command, daemon::OperatorWord& word, RawWord& raw);
+[[nodiscard]] std::string finish_word(daemon::OperatorWord& word, const RawWord& raw);
 
 } // namespace linefeed

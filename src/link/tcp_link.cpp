@@ -111,6 +111,7 @@ void TcpLink::carry_out(session::Effects& effects) {
     while (!effects.empty()) {
         // The printer first: nothing else is as urgent, and nothing else waits for the write to be done.
         const bool written = has<session::Write>(effects) && open_ && write();
+        const Instant written_at = written ? now() : Instant{};
         for (const session::Effect& effect : effects) {
             if (!std::holds_alternative<session::Write>(effect) &&
                 !std::holds_alternative<session::CloseLink>(effect)) {
@@ -120,14 +121,12 @@ void TcpLink::carry_out(session::Effects& effects) {
         const bool closing = has<session::CloseLink>(effects);
         effects.clear();
         if (written) {
-            session_.on_written(now(), effects);
+            session_.on_written(written_at, effects);
         }
         if (closing) {
             close();
         }
     }
-    handler_.on_progress();
-    arm_timer();
 }
 
 bool TcpLink::write() {

@@ -22,12 +22,12 @@ namespace linefeed::link {
 class EffectHandler {
 public:
     virtual ~EffectHandler() = default;
-    /// Settle, BeginRun, AskIntent, ConfirmPrinted, ReleasePage, Notice or End.
+    /// Settle, BeginRun, AdoptRun, AskIntent, ConfirmPrinted, ReleasePage, RecordsWritten, Notice or End.
     virtual void on_effect(const session::Effect& effect) = 0;
     /// There is no connection; the reason in words.
     virtual void on_unreachable(const std::string& reason) = 0;
-    /// Called after every batch of effects.
-    virtual void on_progress() = 0;
+    /// Called after every fact that the session was told at `at`, and all that followed from it.
+    virtual void on_progress(Instant at) = 0;
 };
 
 /// Flow: connect(), then call() whenever the session has to be told something. Lives on one thread, that of `context`.
@@ -42,8 +42,11 @@ public:
     template <typename Fact>
     void call(Fact&& fact) {
         session::Effects effects;
-        fact(session_, now(), effects);
+        const Instant at = now();
+        fact(session_, at, effects);
         carry_out(effects);
+        handler_.on_progress(at);
+        arm_timer();
     }
 
     /// Gives up: closes without telling the session.

@@ -18,8 +18,9 @@ void Outbox::Batch::clear() {
     pieces.clear();
 }
 
-void Outbox::staged_command() {
-    const std::size_t added = staged_.commands.size() - commands_staged_;
+std::string_view Outbox::staged_command() {
+    const std::string_view command = std::string_view{staged_.commands}.substr(commands_staged_);
+    const std::size_t added = command.size();
     LINEFEED_ASSERT(added > 0);
     const bool last_is_command = !staged_.pieces.empty() && staged_.pieces[staged_.pieces.size() - 1].slice.empty();
     if (last_is_command) {
@@ -28,6 +29,7 @@ void Outbox::staged_command() {
         staged_.pieces.push_back({{}, commands_staged_, added});
     }
     commands_staged_ = staged_.commands.size();
+    return command;
 }
 
 void Outbox::stage_slice(std::string_view bytes) {

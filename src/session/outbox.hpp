@@ -23,8 +23,9 @@ public:
 
     /// The text to append a command to; call staged_command() behind it.
     [[nodiscard]] std::string& command_text() { return staged_.commands; }
-    /// What was appended to command_text() since the last call is one more piece (or lengthens the last).
-    void staged_command();
+    /// What was appended to command_text() since the last call is one more piece (or lengthens the last). Returns it;
+    /// valid until more is appended.
+    std::string_view staged_command();
     /// Stages bytes that live elsewhere. Precondition: not empty.
     void stage_slice(std::string_view bytes);
 

@@ -11,17 +11,23 @@ void PageWindow::add(const RecordPage* page) {
     ++size_;
 }
 
-void PageWindow::stage(RecordRange range, Outbox& outbox) const {
+PageWindow::Staged PageWindow::stage(RecordRange range, Outbox& outbox) const {
     RecordNumber next = range.first();
+    Staged staged;
     for (std::size_t i = 0; i < size_; ++i) {
         const RecordRange here = at(i).range();
         if (here.last() < next) {
             continue;
         }
         const RecordNumber last = std::min(here.last(), range.last());
-        outbox.stage_slice(at(i).slice(RecordRange::closed(next, last)));
+        const std::string_view slice = at(i).slice(RecordRange::closed(next, last));
+        outbox.stage_slice(slice);
+        if (next == range.first()) {
+            staged.first = at(i).slice({next, RecordCount{1}});
+        }
+        staged.bytes += slice.size();
         if (last == range.last()) {
-            return;
+            return staged;
         }
         next = last.next();
     }

@@ -9,6 +9,7 @@
 #include <array>
 #include <cstddef>
 #include <optional>
+#include <string_view>
 
 namespace linefeed::session {
 
@@ -20,8 +21,13 @@ class PageWindow {
 public:
     /// Precondition: follows the newest page without a gap; fewer than max_pages are held.
     void add(const RecordPage* page);
+    /// What was staged.
+    struct Staged {
+        std::string_view first; ///< the frame of the first record
+        std::size_t bytes = 0;  ///< of all
+    };
     /// Stages the frames of `range`, all of which must be here.
-    void stage(RecordRange range, Outbox& outbox) const;
+    Staged stage(RecordRange range, Outbox& outbox) const;
     /// The oldest page, if every record of it is at or below `sent_through`; it leaves the window.
     [[nodiscard]] const RecordPage* take_done(RecordNumber sent_through);
     /// The oldest page, whatever its state; nullptr if none is left.

@@ -8,8 +8,9 @@ namespace linefeed::session {
 using feeder::Actions;
 using protocol::Parameter;
 
-Session::Session(const SessionSettings& settings, const feeder::FeederPlan& plan)
+Session::Session(const SessionSettings& settings, const feeder::FeederPlan& plan, FrameObserver* observer)
     : settings_(settings)
+    , observer_(observer)
     , feeder_(settings.feeder, plan)
     , decoder_(settings.escapes) {}
 
@@ -30,7 +31,7 @@ void Session::on_received(std::string_view bytes, Instant now, Effects& out) {
             return;
         }
         if (const auto* error = std::get_if<protocol::FrameError>(&result)) {
-            statistics_.bytes_damaged += error->bytes;
+            take_damage(error->bytes, now);
             continue;
         }
         Actions actions;
@@ -60,7 +61,17 @@ bool may_be_answer(const protocol::Frame& frame) {
 
 } // namespace
 
+void Session::take_damage(std::uint64_t bytes, Instant now) {
+    statistics_.bytes_damaged += bytes;
+    if (observer_ != nullptr) {
+        observer_->on_damage_received(bytes, now);
+    }
+}
+
 void Session::take_frame(const protocol::Frame& frame, Instant now, Actions& actions) {
+    if (observer_ != nullptr) {
+        observer_->on_frame_received(frame.raw, now);
+    }
     ++statistics_.frames_received;
     heard_at_ = now;
     if (!may_be_answer(frame)) {
@@ -147,11 +158,16 @@ void Session::time_out(Parameter what, Instant now, Actions& actions) {
     }
 }
 
-void Session::on_written(Instant, Effects& out) {
+void Session::on_written(Instant now, Effects& out) {
     if (!outbox_.writing()) {
         return; // given up: the link has closed, or the farewell took too long
     }
     outbox_.write_done();
+    if (records_under_way_) {
+        records_under_way_->written_at = now;
+        out.push_back(*records_under_way_);
+        records_under_way_.reset();
+    }
     release_pages(out);
     flush(out);
     finish_if_drained(out);

@@ -8,6 +8,7 @@
 #include "feeder/feeder.hpp"
 #include "protocol/frame_decoder.hpp"
 #include "protocol/messages.hpp"
+#include "session/frame_observer.hpp"
 #include "session/outbox.hpp"
 #include "session/page_window.hpp"
 
@@ -28,14 +29,22 @@ struct ReleasePage {
     const RecordPage* page = nullptr;
     friend bool operator==(const ReleasePage&, const ReleasePage&) = default;
 };
+/// These records have been handed to the kernel, in one write.
+struct RecordsWritten {
+    RecordRange records;
+    Instant allowed_at{}; ///< when the fact came that let the first of them go: mostly an answer
+    Instant written_at{};
+    friend bool operator==(const RecordsWritten&, const RecordsWritten&) = default;
+};
 /// Nothing more will be read or written.
 struct CloseLink {
     friend bool operator==(const CloseLink&, const CloseLink&) = default;
 };
 
 /// What the edge has to carry out, in order.
-using Effect = std::variant<std::monostate, Write, ReleasePage, CloseLink, feeder::Settle, feeder::BeginRun,
-                            feeder::AdoptRun, feeder::AskIntent, feeder::ConfirmPrinted, feeder::Notice, feeder::End>;
+using Effect =
+    std::variant<std::monostate, Write, ReleasePage, RecordsWritten, CloseLink, feeder::Settle, feeder::BeginRun,
+                 feeder::AdoptRun, feeder::AskIntent, feeder::ConfirmPrinted, feeder::Notice, feeder::End>;
 inline constexpr std::size_t max_effects = 48;
 using Effects = BoundedList<Effect, max_effects>;
 
@@ -61,7 +70,8 @@ struct SessionStatistics {
 /// next_wake(). Each appends to `out`, in order. After End nothing follows but CloseLink.
 class Session {
 public:
-    Session(const SessionSettings& settings, const feeder::FeederPlan& plan);
+    /// `observer`, if anybody keeps the frames, must outlive it.
+    Session(const SessionSettings& settings, const feeder::FeederPlan& plan, FrameObserver* observer = nullptr);
 
     void on_connected(Instant now, Effects& out);
     /// Bytes as they came, in any split.
@@ -96,6 +106,7 @@ private:
     };
     static constexpr std::size_t max_inquiries = 64;
 
+    void take_damage(std::uint64_t bytes, Instant now);
     void take_frame(const protocol::Frame& frame, Instant now, feeder::Actions& actions);
     [[nodiscard]] bool take_answer(const protocol::Message& message, Instant now, feeder::Actions& actions);
     /// Removes the oldest inquiry for `what`; false if there was none.
@@ -104,16 +115,21 @@ private:
     void time_out(protocol::Parameter what, Instant now, feeder::Actions& actions);
     void carry_out(const feeder::Actions& actions, Instant now, Effects& out);
     void carry_out(const feeder::Action& action, Instant now, Effects& out);
+    void stage(RecordRange records, Instant now);
+    void staged_command(Instant now);
     void flush(Effects& out);
     void finish_if_drained(Effects& out);
     void release_pages(Effects& out);
     [[nodiscard]] std::optional<Instant> first_deadline() const;
 
     SessionSettings settings_;
+    FrameObserver* observer_;
     feeder::Feeder feeder_;
     protocol::FrameDecoder decoder_;
     Outbox outbox_;
     PageWindow pages_;
+    std::optional<RecordsWritten> staged_records_;    ///< in the outbox, for the next write
+    std::optional<RecordsWritten> records_under_way_; ///< with the write under way
     BoundedList<Inquiry, max_inquiries> inquiries_;
     Instant heard_at_{}; ///< of the last frame
     SessionStatistics statistics_;

@@ -4,6 +4,7 @@
 
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace linefeed::session {
@@ -41,21 +42,21 @@ void Session::carry_out(const feeder::Action& action, Instant now, Effects& out)
         void operator()(const feeder::Inquire& inquire) const {
             session.inquiries_.push_back({inquire.what, now + session.settings_.reply_timeout});
             protocol::append_inquiry(session.outbox_.command_text(), inquire.what);
-            session.outbox_.staged_command();
+            session.staged_command(now);
         }
         void operator()(const feeder::Command& command) const {
             protocol::append_action(session.outbox_.command_text(), command.what);
-            session.outbox_.staged_command();
+            session.staged_command(now);
         }
         void operator()(const feeder::SetStopAt& stop) const {
             protocol::append_message(session.outbox_.command_text(), protocol::StopAt{stop.number});
-            session.outbox_.staged_command();
+            session.staged_command(now);
         }
-        void operator()(const feeder::SendRecords& send) const { session.pages_.stage(send.range, session.outbox_); }
+        void operator()(const feeder::SendRecords& send) const { session.stage(send.range, now); }
         void operator()(const feeder::SendEndMarker& marker) const {
             append_end_marker(session.outbox_.command_text(), marker.number, session.settings_.charsets,
                               session.settings_.escapes);
-            session.outbox_.staged_command();
+            session.staged_command(now);
         }
         void operator()(const feeder::Settle& settle) const { out.push_back(settle); }
         void operator()(const feeder::BeginRun& begin) const { out.push_back(begin); }
@@ -71,8 +72,28 @@ void Session::carry_out(const feeder::Action& action, Instant now, Effects& out)
     std::visit(Visitor{*this, now, out}, action);
 }
 
+void Session::staged_command(Instant now) {
+    const std::string_view command = outbox_.staged_command();
+    if (observer_ != nullptr) {
+        observer_->on_command_sent(command, now);
+    }
+}
+
+void Session::stage(RecordRange records, Instant now) {
+    const PageWindow::Staged staged = pages_.stage(records, outbox_);
+    if (observer_ != nullptr) {
+        observer_->on_records_sent(records, staged.first, staged.bytes, now);
+    }
+    if (staged_records_) {
+        staged_records_->records = RecordRange::closed(staged_records_->records.first(), records.last());
+    } else {
+        staged_records_ = RecordsWritten{records, now, {}};
+    }
+}
+
 void Session::flush(Effects& out) {
     if (connected_ && outbox_.begin_write()) {
+        records_under_way_ = std::exchange(staged_records_, std::nullopt);
         out.push_back(Write{});
     }
 }

@@ -3,11 +3,32 @@
 
 #include <nlohmann/json.hpp>
 
+#include <array>
 #include <cstdio>
 #include <ostream>
 
 namespace linefeed::simulator {
 namespace {
+
+using std::chrono::milliseconds;
+
+/// Lower borders of the lead times that are told; above the last there is none.
+constexpr std::array<Duration, 16> told_borders{
+    milliseconds{0},    milliseconds{1},    milliseconds{2},     milliseconds{3},
+    milliseconds{5},    milliseconds{10},   milliseconds{20},    milliseconds{50},
+    milliseconds{100},  milliseconds{200},  milliseconds{500},   milliseconds{1000},
+    milliseconds{2000}, milliseconds{5000}, milliseconds{10000}, milliseconds{60000}};
+
+std::uint64_t count_told(const Histogram<>& lead_times, std::size_t bucket) {
+    const bool last = bucket + 1 == told_borders.size();
+    return last ? lead_times.count_from(told_borders.at(bucket))
+                : lead_times.count_between(told_borders.at(bucket), told_borders.at(bucket + 1));
+}
+
+void add_lead_time(RunStatistics& run, Duration lead) {
+    run.lead_times.record(lead);
+    run.smallest_lead_time = std::min(run.smallest_lead_time.value_or(lead), lead);
+}
 
 double in_ms(Duration duration) {
     return std::chrono::duration<double, std::milli>{duration}.count();
@@ -20,12 +41,11 @@ std::string fixed(double value) {
 }
 
 std::string bucket_name(std::size_t bucket) {
-    const auto& borders = LeadTimeHistogram::borders;
-    const auto ms = [](Duration border) {
-        return std::to_string(std::chrono::duration_cast<std::chrono::milliseconds>(border).count());
+    const auto ms = [](std::size_t border) {
+        return std::to_string(std::chrono::duration_cast<milliseconds>(told_borders.at(border)).count());
     };
-    const std::string from = ms(borders.at(bucket));
-    return bucket + 1 < borders.size() ? from + "-" + ms(borders.at(bucket + 1)) + " ms" : "from " + from + " ms";
+    const std::string from = ms(bucket);
+    return bucket + 1 < told_borders.size() ? from + "-" + ms(bucket + 1) + " ms" : "from " + from + " ms";
 }
 
 void write_errors(std::ostream& out, const RunStatistics& run) {
@@ -37,14 +57,14 @@ void write_errors(std::ostream& out, const RunStatistics& run) {
 }
 
 void write_lead_times(std::ostream& out, const RunStatistics& run) {
-    const auto smallest = run.lead_times.smallest();
+    const auto& smallest = run.smallest_lead_time;
     out << "smallest lead time before a PrintGo: " << (smallest ? fixed(in_ms(*smallest)) + " ms" : "none") << '\n';
     if (smallest) {
         out << "lead times:\n";
     }
-    for (std::size_t bucket = 0; bucket < LeadTimeHistogram::borders.size(); ++bucket) {
-        if (run.lead_times.count(bucket) > 0) {
-            out << "  " << bucket_name(bucket) << ": " << run.lead_times.count(bucket) << '\n';
+    for (std::size_t bucket = 0; bucket < told_borders.size(); ++bucket) {
+        if (const std::uint64_t count = count_told(run.lead_times, bucket); count > 0) {
+            out << "  " << bucket_name(bucket) << ": " << count << '\n';
         }
     }
 }
@@ -55,7 +75,7 @@ void RunStatistics::add(const Printed& print) {
     ++prints;
     numbers.add(print.number);
     if (print.lead_time) {
-        lead_times.add(*print.lead_time);
+        add_lead_time(*this, *print.lead_time);
     } else {
         ++repeats;
     }
@@ -64,7 +84,7 @@ void RunStatistics::add(const Printed& print) {
 void RunStatistics::add(const Underrun& underrun) {
     ++underruns;
     if (underrun.lead_time) {
-        lead_times.add(*underrun.lead_time);
+        add_lead_time(*this, *underrun.lead_time);
     }
 }
 
@@ -95,17 +115,16 @@ void write_summary(std::ostream& out, const RunStatistics& run) {
 std::string summary_json(const RunStatistics& run) {
     using nlohmann::json;
     json histogram = json::array();
-    const auto& borders = LeadTimeHistogram::borders;
-    for (std::size_t i = 0; i < borders.size(); ++i) {
-        histogram.push_back({{"from_ms", in_ms(borders.at(i))},
-                             {"to_ms", i + 1 < borders.size() ? json(in_ms(borders.at(i + 1))) : json()},
-                             {"count", run.lead_times.count(i)}});
+    for (std::size_t i = 0; i < told_borders.size(); ++i) {
+        histogram.push_back({{"from_ms", in_ms(told_borders.at(i))},
+                             {"to_ms", i + 1 < told_borders.size() ? json(in_ms(told_borders.at(i + 1))) : json()},
+                             {"count", count_told(run.lead_times, i)}});
     }
     json errors = json::object();
     for (const auto& [code, count] : run.errors) {
         errors[std::to_string(code)] = count;
     }
-    const auto smallest = run.lead_times.smallest();
+    const auto& smallest = run.smallest_lead_time;
     const json summary{
         {"prints", run.prints},
         {"first_number", run.numbers.smallest().value()},

@@ -1,7 +1,7 @@
 // What a run of the simulator amounts to: counted while it goes, told at its end in words or as JSON.
 #pragma once
 
-#include "simulator/lead_time_histogram.hpp"
+#include "base/histogram.hpp"
 #include "simulator/number_sequence.hpp"
 #include "simulator/printer_effects.hpp"
 
@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <iosfwd>
 #include <map>
+#include <optional>
 #include <string>
 
 namespace linefeed::simulator {
@@ -21,7 +22,8 @@ struct RunStatistics {
     std::uint64_t unprinted_products = 0; ///< passed the sensor without a print
     std::uint64_t underruns = 0;
     std::map<std::uint32_t, std::uint64_t> errors; ///< by code (without bit 24)
-    LeadTimeHistogram lead_times;                  ///< of printed records and of those that came too late
+    Histogram<> lead_times;                        ///< of printed records and of those that came too late
+    std::optional<Duration> smallest_lead_time;
     NumberSequence numbers;
     std::uint32_t depth = 0;
     std::uint32_t highest_fill = 0;         ///< records in the printer, the loaded one included

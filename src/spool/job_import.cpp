@@ -269,6 +269,10 @@ Result<Job> JobImport::stop(std::string import_report) {
     return state_->job;
 }
 
+void JobImport::give_up() {
+    state_.reset();
+}
+
 Result<JobImport> Spool::begin_import(const JobSpec& spec, std::string import_report) {
     if (auto writable = state_->check_writable(); !writable) {
         return writable.error();

@@ -10,7 +10,7 @@ namespace linefeed::spool {
 
 namespace {
 
-constexpr std::array<std::pair<LedgerKind, std::string_view>, 8> kind_names{{
+constexpr std::array<std::pair<LedgerKind, std::string_view>, 9> kind_names{{
     {LedgerKind::run_started, "run_started"},
     {LedgerKind::intent, "intent"},
     {LedgerKind::printed, "printed"},
@@ -18,6 +18,7 @@ constexpr std::array<std::pair<LedgerKind, std::string_view>, 8> kind_names{{
     {LedgerKind::in_doubt, "in_doubt"},
     {LedgerKind::skipped, "skipped"},
     {LedgerKind::released, "released"},
+    {LedgerKind::reprint, "reprint"},
     {LedgerKind::run_ended, "run_ended"},
 }};
 

@@ -23,6 +23,7 @@ enum class LedgerKind {
     in_doubt,    ///< nobody knows
     skipped,     ///< in doubt, and an operator decided not to print them again
     released,    ///< in doubt, and an operator decided to print them again
+    reprint,     ///< printed or skipped, and an operator wants them printed once more
     run_ended,   ///< the run is over; the range is empty; evidence: why
 };
 
@@ -34,7 +35,7 @@ enum class RecordState {
     unused,   ///< issued, surely not printed; may be issued again
     in_doubt, ///< waits for an operator
     skipped,  ///< in doubt for good, not printed again
-    released, ///< was in doubt, may be issued again
+    released, ///< may be issued again by the word of an operator
 };
 
 [[nodiscard]] std::string_view to_string(LedgerKind kind);
@@ -85,7 +86,8 @@ public:
 
     /// Takes one row into account. Returns false, and changes nothing, if the row contradicts the state: an intent over
     /// records that are printed, open, in doubt or skipped; a result (printed, unused, in_doubt) for records that are
-    /// not open (printed, unused: or in doubt); skipped or released for records that are not in doubt.
+    /// not open (printed, unused: or in doubt); skipped or released for records that are not in doubt; reprint for
+    /// records that are neither printed nor skipped.
     [[nodiscard]] bool apply(const LedgerEntry& entry);
 
     [[nodiscard]] const std::vector<LedgerSegment>& segments() const { return segments_; }

@@ -22,6 +22,7 @@ std::optional<RecordState> state_after(LedgerKind kind) {
     case LedgerKind::skipped:
         return RecordState::skipped;
     case LedgerKind::released:
+    case LedgerKind::reprint:
         return RecordState::released;
     }
     assertion_failed("LedgerKind", __FILE__, __LINE__);

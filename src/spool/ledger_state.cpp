@@ -22,6 +22,7 @@ std::optional<RecordState> state_after(LedgerKind kind) {
     case LedgerKind::skipped:
         return RecordState::skipped;
     case LedgerKind::released:
+    case LedgerKind::reprint:
         return RecordState::released;
     case LedgerKind::run_started:
     case LedgerKind::run_ended:
@@ -47,6 +48,8 @@ bool allowed(LedgerKind kind, RecordState state) {
     case LedgerKind::skipped:
     case LedgerKind::released:
         return state == RecordState::in_doubt;
+    case LedgerKind::reprint:
+        return state == RecordState::printed || state == RecordState::skipped;
     case LedgerKind::run_started:
     case LedgerKind::run_ended:
         return true; // about no record: apply() does not ask

@@ -199,6 +199,10 @@ Result<void> Spool::checkpoint() {
     return {};
 }
 
+Result<void> Spool::writable() const {
+    return state_->check_writable();
+}
+
 Result<void> Spool::State::check_writable() const {
     if (broken) {
         return Failure{FailureKind::storage,

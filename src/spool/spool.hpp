@@ -8,6 +8,7 @@
 #include "base/record_page.hpp"
 #include "spool/job.hpp"
 #include "spool/ledger.hpp"
+#include "spool/ticket.hpp"
 
 #include <cstdint>
 #include <filesystem>
@@ -57,6 +58,8 @@ public:
     /// No record follows, because the next row is bad: the job is left as ImportState::stopped, durably. Fails as
     /// commit(). Nothing is added after it.
     [[nodiscard]] Result<Job> stop(std::string import_report);
+    /// Gives the job up without removing it, which takes its time: that is left to Spool::remove_job_step().
+    void give_up();
 
 private:
     friend class Spool;
@@ -90,6 +93,8 @@ public:
     /// The jobs whose import was broken off or stopped when records of them had been granted to a run, oldest first.
     [[nodiscard]] Result<std::vector<Job>> unfinished_jobs();
     [[nodiscard]] Result<std::vector<Job>> jobs();
+    /// At most `limit` jobs, the newest first: those that are older than `before`.
+    [[nodiscard]] Result<std::vector<Job>> newest_jobs(std::optional<JobId> before, std::size_t limit);
     [[nodiscard]] Result<std::optional<Job>> job(JobId id);
     /// The ready job that was imported from exactly this source with this layout.
     [[nodiscard]] Result<std::optional<Job>> find_by_source(const JobSpec& spec);
@@ -105,6 +110,36 @@ public:
     [[nodiscard]] Result<void> update_source(JobId id, const SourceFingerprint& source);
     /// Removes a job that has no ledger rows, with its pages.
     [[nodiscard]] Result<void> remove_job(JobId id);
+    /// The same bit by bit: false when it is gone. In between it is an import that was broken off.
+    [[nodiscard]] Result<bool> remove_job_step(JobId id);
+
+    // Tickets (schema 3)
+    [[nodiscard]] Result<std::optional<Ticket>> ticket(JobId job);
+    /// The tickets in the queue of a printer, in order.
+    [[nodiscard]] Result<std::vector<Ticket>> queue(const std::string& printer);
+    /// Of jobs that were begun and are not over, oldest first.
+    [[nodiscard]] Result<std::vector<Ticket>> begun_jobs();
+    /// Writes a ticket, durable at return. The job must be there.
+    [[nodiscard]] Result<void> write_ticket(const Ticket& ticket);
+    /// A place before all others of the printer's queue, or behind them.
+    [[nodiscard]] Result<std::int64_t> first_place(const std::string& printer);
+    [[nodiscard]] Result<std::int64_t> last_place(const std::string& printer);
+
+    // What has happened, who has done what, and what was answered (schema 3)
+    /// So many events are kept, and up to a thousand more.
+    static constexpr std::size_t max_events = 100'000;
+    /// Their ids are given here. Durable at return.
+    [[nodiscard]] Result<void> add_events(std::span<const Event> events);
+    /// Those behind `after`, ascending, at most `limit`.
+    [[nodiscard]] Result<std::vector<Event>> events(std::uint64_t after, std::size_t limit);
+    [[nodiscard]] Result<void> add_audit(const AuditEntry& entry);
+    [[nodiscard]] Result<std::vector<AuditEntry>> audit(std::uint64_t after, std::size_t limit);
+    /// The answer that `caller` was given for `key`, not before that time.
+    [[nodiscard]] Result<std::optional<Answer>> answer(const std::string& caller, const std::string& key,
+                                                       std::int64_t not_before_ns);
+    /// Older answers than `not_before_ns` are forgotten.
+    [[nodiscard]] Result<void> keep_answer(const std::string& caller, const std::string& key, const Answer& answer,
+                                           std::int64_t time_ns, std::int64_t not_before_ns);
 
     // Pages
     /// The page that holds `number`, its checksum verified.
@@ -132,6 +167,9 @@ public:
     [[nodiscard]] Result<std::optional<LastRun>> last_run(JobId job);
     /// Recomputes the whole chain and the stored segments; the failure names the first row that is wrong.
     [[nodiscard]] Result<std::int64_t> verify_ledger();
+
+    /// A failure if nothing is written any more, and why.
+    [[nodiscard]] Result<void> writable() const;
 
     /// Copies what is in the WAL into the database. Called off the critical path; a busy reader only postpones it.
     [[nodiscard]] Result<void> checkpoint();

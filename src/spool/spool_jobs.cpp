@@ -1,6 +1,8 @@
 // The jobs of a spool: what was imported, from where, and which of them is meant by a source.
 #include "spool/spool_state.hpp"
 
+#include <limits>
+
 namespace linefeed::spool {
 
 namespace {
@@ -72,6 +74,17 @@ Result<std::vector<Job>> Spool::jobs() {
     if (!statement) {
         return statement.error();
     }
+    return read_jobs(*statement, state_->database->path());
+}
+
+Result<std::vector<Job>> Spool::newest_jobs(std::optional<JobId> before, std::size_t limit) {
+    static const std::string sql = std::string{select_jobs} + "WHERE id < ?1 ORDER BY id DESC LIMIT ?2";
+    auto statement = state_->database->prepare(sql.c_str());
+    if (!statement) {
+        return statement.error();
+    }
+    const auto bound = before.value_or(JobId{std::numeric_limits<std::int64_t>::max()});
+    statement->bind(1, static_cast<std::int64_t>(bound)).bind(2, static_cast<std::int64_t>(limit));
     return read_jobs(*statement, state_->database->path());
 }
 
@@ -188,8 +201,20 @@ Result<bool> Spool::State::stands_in_ledger(JobId id) {
 }
 
 Result<void> Spool::remove_job(JobId id) {
+    while (true) {
+        const auto more = remove_job_step(id);
+        if (!more) {
+            return more.error();
+        }
+        if (!*more) {
+            return {};
+        }
+    }
+}
+
+Result<bool> Spool::remove_job_step(JobId id) {
     if (auto writable = state_->check_writable(); !writable) {
-        return writable;
+        return writable.error();
     }
     const auto used = state_->stands_in_ledger(id);
     if (!used) {
@@ -200,46 +225,53 @@ Result<void> Spool::remove_job(JobId id) {
                                                " stands in the print ledger: it cannot be removed"};
     }
     state_->ledgers.erase(static_cast<std::int64_t>(id));
-    if (auto done = state_->remove_job_in_steps(id); !done) {
-        return state_->failed_write(done.error());
-    }
-    return {};
+    const auto more = state_->remove_step(id);
+    return more ? more : state_->failed_write(more.error());
 }
 
 Result<void> Spool::State::remove_job_in_steps(JobId id) {
-    const auto job = static_cast<std::int64_t>(id);
-    {
-        auto mark = database->prepare("UPDATE jobs SET state = 'importing' WHERE id = ?1");
-        if (!mark) {
-            return mark.error();
-        }
-        if (auto done = mark->bind(1, job).run(); !done) {
-            return done;
-        }
-    }
     while (true) {
-        {
-            auto pages = database->prepare(
-                "DELETE FROM pages WHERE id IN (SELECT id FROM pages WHERE job = ?1 ORDER BY first LIMIT 256)");
-            if (!pages) {
-                return pages.error();
-            }
-            if (auto done = pages->bind(1, job).run(); !done) {
-                return done;
-            }
+        const auto more = remove_step(id);
+        if (!more) {
+            return more.error();
         }
-        if (database->changes() == 0) {
-            break;
-        }
-        if (auto copied = database->checkpoint_passive(); !copied) {
-            return copied.error();
+        if (!*more) {
+            return {};
         }
     }
+}
+
+/// Its pages first, some at a time, and the job with the last of them.
+Result<bool> Spool::State::remove_step(JobId id) {
+    const auto job = static_cast<std::int64_t>(id);
+    auto transaction = Transaction::begin(*database);
+    if (!transaction) {
+        return transaction.error();
+    }
+    auto mark = database->prepare("UPDATE jobs SET state = 'importing' WHERE id = ?1 AND state <> 'importing'");
+    auto pages = database->prepare(
+        "DELETE FROM pages WHERE id IN (SELECT id FROM pages WHERE job = ?1 ORDER BY first LIMIT 256)");
     auto row = database->prepare("DELETE FROM jobs WHERE id = ?1");
-    if (!row) {
-        return row.error();
+    if (!mark || !pages || !row) {
+        return !mark ? mark.error() : !pages ? pages.error() : row.error();
     }
-    return row->bind(1, job).run();
+    if (auto done = mark->bind(1, job).run(); !done) {
+        return done.error();
+    }
+    if (auto done = pages->bind(1, job).run(); !done) {
+        return done.error();
+    }
+    const bool more = database->changes() > 0;
+    if (auto done = more ? Result<void>{} : row->bind(1, job).run(); !done) {
+        return done.error();
+    }
+    if (auto done = transaction->commit(); !done) {
+        return done.error();
+    }
+    if (auto copied = database->checkpoint_passive(); !copied) {
+        return copied.error();
+    }
+    return more;
 }
 
 Result<void> Spool::State::remove_unfinished_imports() {

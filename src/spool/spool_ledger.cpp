@@ -100,6 +100,9 @@ Result<LedgerState> Spool::State::read_segments(JobId job) {
 
 Result<JobLedger*> Spool::State::job_ledger(JobId id) {
     const auto key = static_cast<std::int64_t>(id);
+    if (reads_only()) {
+        ledgers.clear();
+    }
     if (const auto cached = ledgers.find(key); cached != ledgers.end()) {
         return &cached->second;
     }

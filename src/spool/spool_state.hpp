@@ -29,6 +29,8 @@ struct Spool::State {
     std::string last_hash;
     std::unordered_map<std::int64_t, JobLedger> ledgers;
 
+    /// Another process or connection may write it meanwhile.
+    [[nodiscard]] bool reads_only() const { return broken && broken->kind == FailureKind::usage; }
     /// A failure if the spool does not take writes any more.
     [[nodiscard]] Result<void> check_writable() const;
     /// Nothing more is written after this: what the disk has kept is only known after reopening. Returns `failure`.
@@ -46,6 +48,7 @@ struct Spool::State {
     /// Removes a job and its pages in steps of bounded size. A crash in between leaves an unfinished import, removed
     /// later.
     [[nodiscard]] Result<void> remove_job_in_steps(JobId id);
+    [[nodiscard]] Result<bool> remove_step(JobId id);
 
     [[nodiscard]] Result<void> load_end_of_chain();
     /// verify_ledger() within a transaction.

@@ -82,7 +82,7 @@ Result<std::int64_t> Spool::verify_ledger() {
 
 Result<std::int64_t> Spool::State::verify() {
     const std::string& path = database->path();
-    if (broken && broken->kind == FailureKind::usage) { // open for reading: the writer has gone on since
+    if (reads_only()) { // the writer has gone on since
         if (auto loaded = load_end_of_chain(); !loaded) {
             return loaded.error();
         }

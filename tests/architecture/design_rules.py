@@ -15,10 +15,12 @@ MAY_USE = {
     "simulator": {"base", "protocol"},
     "config": {"base", "protocol", "feeder", "link"},
     "daemon": {"base", "protocol", "feeder", "session", "link", "spool", "intake", "config"},
+    "service": {"base", "protocol", "feeder", "session", "link", "spool", "intake", "config", "daemon"},
     "api": {"base", "protocol", "link", "spool", "config", "daemon"},
     "cli": {"base", "protocol", "feeder", "session", "link", "spool", "intake", "config", "daemon"},
     "client": {"base", "protocol", "spool", "intake", "config", "daemon", "api", "cli"},
-    "linefeed": {"base", "protocol", "intake", "cli", "client"},
+    "linefeed": {"base", "protocol", "intake", "daemon", "cli", "client"},
+    "linefeedd": {"base", "protocol", "spool", "config", "daemon", "service", "cli"},
 }
 
 # Folder -> folder -> the only headers of the second that the first may include: the feeder knows the message types, never bytes.
@@ -63,8 +65,9 @@ LIBRARY_FOLDERS = {
     r"sqlite3(ext)?\.h": {"spool", "intake"},
     r"boost/(asio|beast)(/.*|\.hpp)?": {"base", "link", "simulator", "daemon", "api"},
     r"prometheus/.*": {"api"},
-    r"CLI/.*": {"linefeed", "simulator"},
+    r"CLI/.*": {"linefeed", "linefeedd", "simulator"},
     r"openssl/.*": {"spool", "api"},
     r"yaml-cpp/.*": {"config"},
+    r"spdlog/.*|systemd/.*": {"daemon"},
     r"nlohmann/.*": {"spool", "simulator", "config", "daemon", "api", "cli", "client"},
 }

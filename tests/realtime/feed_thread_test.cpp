@@ -81,7 +81,12 @@ void wait_for(daemon::JobRun& run, std::uint32_t printed) {
 }
 
 TEST_F(FeedThreadTest, shouldNeitherAllocateNorLockNorTouchAFileInTheSteadyState) {
-    daemon::JobRun run{{feed_, *store_}, directory_.spool(), job_, job_.records, std::nullopt, settings()};
+    daemon::LineMeters meters;
+    daemon::JobRunSettings watched = settings();
+    watched.meters = &meters;
+    daemon::FrameHistory frames;
+    watched.frames = &frames;
+    daemon::JobRun run{{feed_, *store_}, directory_.spool(), job_, job_.records, std::nullopt, watched};
     run.start();
     wait_for(run, warm_through);
     ASSERT_FALSE(run.finished());
@@ -98,6 +103,17 @@ TEST_F(FeedThreadTest, shouldNeitherAllocateNorLockNorTouchAFileInTheSteadyState
     wait_for(run, records);
     run.join();
     EXPECT_EQ(run.outcome().code, feeder::OutcomeCode::finished);
+
+    // It was measured all the while.
+    EXPECT_EQ(meters.records_sent, records);
+    EXPECT_EQ(meters.records_printed, records);
+    EXPECT_EQ(meters.lead_time.count_from(Duration::zero()), records);
+    EXPECT_EQ(meters.refill.count_from(Duration::zero()), meters.refills);
+    EXPECT_GT(store_->commit_times().count_from(Duration::zero()), 0U);
+    EXPECT_EQ(run.progress().machine->machine, protocol::MachineState::ready_to_print);
+    EXPECT_EQ(run.progress().fifo_depth, 256U);
+    EXPECT_EQ(frames.frames().size(), 2 * daemon::FrameHistory::frames_kept);
+    EXPECT_TRUE(frames.kept().empty());
 
     // It was at work: otherwise the counts would prove nothing.
     std::cout << seconds << " s, " << seen.sends << " writes and " << seen.receives << " reads of the feed thread, "
@@ -146,8 +162,12 @@ TEST(ManyPrintersFeedThreadTest, shouldNeitherAllocateNorLockNorTouchAFileInTheS
         daemon::FeedThread feed{{}};
         daemon::StoreThread store{directory.spool()};
         static_cast<void>(feed.start());
+        std::vector<daemon::LineMeters> meters(printers);
+        std::vector<daemon::FrameHistory> frames(printers);
         std::vector<std::unique_ptr<daemon::JobRun>> runs;
         for (int i = 0; i < printers; ++i) {
+            settings[static_cast<std::size_t>(i)].meters = &meters[static_cast<std::size_t>(i)];
+            settings[static_cast<std::size_t>(i)].frames = &frames[static_cast<std::size_t>(i)];
             store.call([&](spool::Spool& spool) {
                 const spool::Job& job = jobs[static_cast<std::size_t>(i)];
                 runs.push_back(std::make_unique<daemon::JobRun>(daemon::RunThreads{feed, store}, spool, job,

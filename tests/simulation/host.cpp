@@ -89,7 +89,7 @@ void Host::import_job() {
     job_ = job->id;
 }
 
-void Host::start(const cli::OperatorWord& word) {
+void Host::start(const daemon::OperatorWord& word) {
     LINEFEED_ASSERT(!running());
     ++context_.counts.starts;
     context_.trace.note(context_.now, "program starts", word.given() ? 1 : 0);
@@ -123,7 +123,7 @@ void Host::next_run() {
             word_counts_ = false;
             const auto job = spool_->job(job_);
             LINEFEED_ASSERT(job && *job);
-            if (const auto settled = cli::settle_by_operator(*spool_, **job, word_); !settled) {
+            if (const auto settled = daemon::settle_by_operator(*spool_, **job, word_, "operator"); !settled) {
                 if (settled.error().kind != FailureKind::usage) {
                     end_process(OutcomeCode::storage_failed);
                     return;

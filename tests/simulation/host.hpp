@@ -3,7 +3,7 @@
 // power.
 #pragma once
 
-#include "cli/operator_word.hpp"
+#include "daemon/operator_word.hpp"
 #include "context.hpp"
 #include "judge.hpp"
 #include "ram_disk.hpp"
@@ -35,7 +35,7 @@ public:
     /// Reads the file into the spool. A violation if that fails.
     void import_job();
     /// The operator enters the command. Precondition: not running.
-    void start(const cli::OperatorWord& word);
+    void start(const daemon::OperatorWord& word);
     [[nodiscard]] bool running() const { return run_ != nullptr; }
     [[nodiscard]] const Ending& ending() const { return ending_; }
     [[nodiscard]] std::optional<feeder::Phase> phase() const;
@@ -97,7 +97,7 @@ private:
     std::unique_ptr<Run> run_;
     session::Effects effects_;
     Ending ending_;
-    cli::OperatorWord word_;
+    daemon::OperatorWord word_;
     bool word_counts_ = false;
     bool interrupted_ = false;
     bool records_open_ = false;

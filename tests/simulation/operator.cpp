@@ -85,8 +85,8 @@ bool Operator::puts_printer_in_order() {
     return needs_word && random_.chance(0.7) ? press(Action::acknowledge_errors) : false;
 }
 
-cli::OperatorWord Operator::decides() {
-    cli::OperatorWord word;
+daemon::OperatorWord Operator::decides() {
+    daemon::OperatorWord word;
     const std::vector<RecordRange>& doubt = host_.ending().in_doubt;
     if (doubt.empty()) {
         return word;
@@ -99,12 +99,12 @@ cli::OperatorWord Operator::decides() {
         judge_.last() >= first && judge_.last() <= doubt.back().last() && !judge_.unbroken(first, judge_.last());
     const std::uint64_t dice = random_.below(100);
     if (dice < context_.scenario.skips_percent) {
-        word.policy = cli::InDoubtPolicy::skip;
+        word.policy = daemon::InDoubtPolicy::skip;
         std::for_each(doubt.begin(), doubt.end(), [this](const RecordRange& range) { judge_.will_skip(range); });
         return word;
     }
     if (dice < context_.scenario.skips_percent + context_.scenario.reprints_percent) {
-        word.policy = cli::InDoubtPolicy::reprint;
+        word.policy = daemon::InDoubtPolicy::reprint;
         std::for_each(doubt.begin(), doubt.end(), [this](const RecordRange& range) { judge_.will_reprint(range); });
         return word;
     }

@@ -23,7 +23,7 @@ public:
 
 private:
     [[nodiscard]] bool puts_printer_in_order();
-    [[nodiscard]] cli::OperatorWord decides();
+    [[nodiscard]] daemon::OperatorWord decides();
     [[nodiscard]] std::string names_products(const std::vector<RecordRange>& doubt);
     void look_again();
 

@@ -1,6 +1,6 @@
 // What a person or a program is told at the end of `linefeed print`.
 #include "cli/print_report.hpp"
-#include "cli/record_text.hpp"
+#include "daemon/record_text.hpp"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -8,6 +8,9 @@
 #include <unistd.h>
 
 namespace linefeed::cli {
+
+using daemon::record_fields;
+using daemon::RecordFormat;
 namespace {
 
 using spool::LedgerEntry;

@@ -201,10 +201,10 @@ TEST_F(Commands, shouldNotResumeOnAWordThatIsRefused) {
 }
 
 TEST(SettleRequest, shouldHaveExactlyWhatWasSaid) {
-    cli::OperatorWord word;
-    word.policy = cli::InDoubtPolicy::skip;
+    daemon::OperatorWord word;
+    word.policy = daemon::InDoubtPolicy::skip;
     EXPECT_EQ(settle_request(word), (Json{{"in_doubt", "skip"}}));
-    word.policy = cli::InDoubtPolicy::reprint;
+    word.policy = daemon::InDoubtPolicy::reprint;
     EXPECT_EQ(settle_request(word), (Json{{"in_doubt", "reprint"}}));
     word = {};
     word.printed = "none";
@@ -399,8 +399,9 @@ TEST_F(Commands, shouldShowTheNewestOfTheAuditLog) {
     Json first = page({});
     first["last_id"] = 7;
     service.answer("GET /api/v1/audit?limit=1", first);
-    const Json entry{{"id", 6},       {"time_ns", 1},          {"who", "anna"}, {"what", "stop"},
-                     {"object", "x"}, {"detail", Json::object()}, {"done", true}};
+    const Json entry{{"id", 6},        {"time_ns", 1},  {"who", "anna"},
+                     {"what", "stop"}, {"object", "x"}, {"detail", Json::object()},
+                     {"done", true}};
     service.answer("GET /api/v1/audit?limit=1000&after=5", page({entry}));
     const Said said = run(run_audit, AuditOptions{common(true), 2});
     EXPECT_EQ(said.code, ExitCode::done);

@@ -46,7 +46,7 @@ layouts:
   b: {query: SELECT 1}
 printers:
   p: {address: "tcp://10.0.0.1:3002", profile: jet2neo, job_file: 'FFSDISK\JOBS\a.job', open_nozzle: true, errors: {5043: report},
-      poll_min: 400 us, poll_max: 1 s, connect_timeout: 1 s, reply_timeout: 500 ms, queue: {autostart: true, chain: seamless}}
+      poll_min: 400 us, poll_max: 1 s, connect_timeout: 1 s, reply_timeout: 500 ms, queue: {autostart: true, chain: stop}}
 folders:
   f: {path: /d, layout: a, printer: p, pattern: "*.csv", autostart: true, watch: poll, settle: done-companion, poll_interval: 1 h}
 )",
@@ -73,7 +73,7 @@ folders:
     EXPECT_EQ(printer.job_file, "FFSDISK\\JOBS\\a.job");
     EXPECT_EQ(printer.pacing.poll_min, 400us);
     EXPECT_EQ(printer.reply_timeout, 500ms);
-    EXPECT_EQ(printer.queue.chain, Chain::seamless);
+    EXPECT_EQ(printer.queue.chain, Chain::stop);
     EXPECT_EQ(printer.errors.at(5043), ErrorPolicy::report);
     const FolderSettings& folder = settings->folders.front();
     EXPECT_EQ(folder.watch, Watch::poll);

@@ -41,7 +41,7 @@ protected:
         }
     }
     void on_unreachable(const std::string& reason) override { unreachable_ = reason; }
-    void on_progress() override {}
+    void on_progress(Instant) override {}
 
     void connect() {
         link_.connect({acceptor_.local_endpoint()}, std::chrono::seconds{5});

@@ -37,8 +37,9 @@ inline std::string plain_text(std::uint32_t number) {
 
 class Conversation {
 public:
-    explicit Conversation(const SessionSettings& settings = {}, const feeder::FeederPlan& plan = {})
-        : session(settings, plan) {}
+    explicit Conversation(const SessionSettings& settings = {}, const feeder::FeederPlan& plan = {},
+                          FrameObserver* observer = nullptr)
+        : session(settings, plan, observer) {}
 
     void connect() { session.on_connected(now, effects), settle(); }
     void receive(std::string_view bytes) { session.on_received(bytes, now, effects), settle(); }
@@ -116,6 +117,7 @@ public:
     bool writes_complete_at_once = true; ///< else with written()
     std::size_t writes = 0;
     std::size_t largest_write = 0; ///< pieces
+    std::vector<RecordsWritten> records_written;
     std::size_t pages_lent = 0;
     std::size_t pages_released = 0;
     bool ended = false;
@@ -150,6 +152,8 @@ private:
         } else if (const auto* release = std::get_if<ReleasePage>(&effect)) {
             ++pages_released;
             told << "release page " << release->page->first;
+        } else if (const auto* records = std::get_if<RecordsWritten>(&effect)) {
+            records_written.push_back(*records);
         } else if (std::holds_alternative<CloseLink>(effect)) {
             closed = true;
             told << "close";

@@ -170,6 +170,74 @@ TEST(Session, shouldGatherWhatComesWhileAWriteIsUnderWay) {
     EXPECT_EQ(host.writes, 2U);
 }
 
+TEST(Session, shouldTellWhenRecordsWereAllowedAndWhenTheyWereWritten) {
+    const auto pages = thousand_records();
+    Conversation host;
+    host.print(pages);
+    EXPECT_EQ(host.records_written.size(), 1U); // the fill
+    host.records_written.clear();
+    host.writes_complete_at_once = false;
+    std::vector<Instant> answered;
+    for (const std::uint32_t printed : {16U, 32U, 48U}) {
+        host.now += milliseconds{20};
+        host.wake();
+        answered.push_back(host.now);
+        host.receive(mail(255 - printed, printed, 1000));
+    }
+    EXPECT_TRUE(host.records_written.empty());
+    host.now += milliseconds{1};
+    const Instant first_written = host.now;
+    host.written(); // an inquiry went first
+    host.now += milliseconds{1};
+    host.written();
+    using Written = std::vector<RecordsWritten>;
+    const auto numbers = [](std::uint32_t first, std::uint32_t last) {
+        return RecordRange::closed(RecordNumber{first}, RecordNumber{last});
+    };
+    EXPECT_EQ(host.records_written, (Written{{numbers(257, 304), answered[0], first_written + milliseconds{1}}}));
+    EXPECT_EQ(host.sent().find("^0=MR305"), std::string::npos);
+}
+
+/// Tells what it sees as lines, `<` from the printer and `>` to it.
+class Watching : public FrameObserver {
+public:
+    void on_frame_received(std::string_view frame, Instant at) override { tell("< ", frame, at); }
+    void on_damage_received(std::uint64_t bytes, Instant at) override { tell("< damaged ", std::to_string(bytes), at); }
+    void on_command_sent(std::string_view frame, Instant at) override {
+        EXPECT_EQ(frame.back(), '\r');
+        tell("> ", frame.substr(0, frame.size() - 1), at);
+    }
+    void on_records_sent(RecordRange records, std::string_view first, std::size_t bytes, Instant at) override {
+        EXPECT_EQ(first.back(), '\r');
+        std::ostringstream told;
+        told << records << ", " << bytes << " bytes: " << first.substr(0, first.size() - 1);
+        tell("> ", told.str(), at);
+    }
+    std::string story() { return std::exchange(story_, {}); }
+    Instant last_at{};
+
+private:
+    void tell(std::string_view what, std::string_view text, Instant at) {
+        (story_ += what) += std::string{text} + "\n";
+        last_at = at;
+    }
+    std::string story_;
+};
+
+TEST(Session, shouldShowEveryFrameInItsOrder) {
+    const auto pages = make_pages(1, 1000, 100, plain_text);
+    Watching frames;
+    Conversation host{{}, {}, &frames};
+    host.print(pages);
+    EXPECT_NE(frames.story().find("> ^0=CM1000\n> ^0?SM\n"), std::string::npos);
+    host.now += seconds{1}; // or the numbers would leap
+    host.receive("x" + mail(156, 99, 1000) + "^0=XX1\r");
+    // Those of two pages are one.
+    EXPECT_EQ(frames.story(), "< damaged 1\n< ^0=SM256\t156\t99\t1000\t1\n> 257-355, 1980 bytes: ^0=MR257\trecord "
+                              "257\n< ^0=XX1\n");
+    EXPECT_EQ(frames.last_at, host.now);
+}
+
 TEST(Session, shouldGiveAPageBackOnlyWhenItIsWritten) {
     const auto pages = thousand_records();
     Conversation host;

@@ -1,6 +1,5 @@
 // What stands around the printer model: the ring of records, the conveyor's grid, the tape, the judgement of a run.
 #include "simulator/conveyor.hpp"
-#include "simulator/lead_time_histogram.hpp"
 #include "simulator/lead_time_log.hpp"
 #include "simulator/mail_fifo.hpp"
 #include "simulator/number_sequence.hpp"
@@ -232,20 +231,6 @@ TEST(NumberSequence, shouldBeWholeWhileNothingWasPrinted) {
     EXPECT_EQ(numbers.gaps(), 0U);
 }
 
-TEST(LeadTimeHistogram, shouldPutBordersIntoTheUpperBucket) {
-    LeadTimeHistogram histogram;
-    EXPECT_EQ(histogram.smallest(), std::nullopt);
-    histogram.add(milliseconds{3});
-    histogram.add(milliseconds{3} - Duration{1});
-    histogram.add(std::chrono::hours{1});
-    histogram.add(Duration::zero());
-    EXPECT_EQ(histogram.count(0), 1U);
-    EXPECT_EQ(histogram.count(2), 1U);
-    EXPECT_EQ(histogram.count(3), 1U);
-    EXPECT_EQ(histogram.count(LeadTimeHistogram::borders.size() - 1), 1U);
-    EXPECT_EQ(histogram.smallest(), Duration::zero());
-}
-
 TEST(LeadTimeLog, shouldLeaveOutTheFirstFillAndKnowItsQuantiles) {
     LeadTimeLog log{2, 16};
     EXPECT_EQ(log.quantile(0), std::nullopt);
@@ -314,6 +299,8 @@ TEST(RunStatistics, shouldTellTheRunInWordsAndAsJson) {
     const std::string json = summary_json(run);
     EXPECT_THAT(json, testing::HasSubstr("\"errors\":{\"5043\":1}"));
     EXPECT_THAT(json, testing::HasSubstr("\"smallest_lead_ms\":2.0"));
+    EXPECT_THAT(json, testing::HasSubstr("{\"count\":1,\"from_ms\":2.0,\"to_ms\":3.0}"));
+    EXPECT_THAT(json, testing::HasSubstr("{\"count\":0,\"from_ms\":60000.0,\"to_ms\":null}"));
     EXPECT_THAT(json, testing::HasSubstr("\"lowest_fill\":null"));
 }
 

@@ -59,13 +59,16 @@ TEST_F(LedgerHistoryTest, shouldGiveEveryKindItsState) {
     add(LedgerKind::in_doubt, range(3, 5), 2);
     add(LedgerKind::skipped, range(4, 4), 2);
     add(LedgerKind::released, range(5, 5), 2);
+    add(LedgerKind::printed, range(6, 6), 2);
+    add(LedgerKind::reprint, range(6, 6), 2);
     add(LedgerKind::run_ended, {}, 3);
     std::vector<RecordState> states;
     for (const HistoryStretch& stretch : history.stretches()) {
         states.push_back(stretch.state);
     }
     EXPECT_EQ(states, (std::vector{RecordState::printed, RecordState::unused, RecordState::in_doubt,
-                                   RecordState::skipped, RecordState::released, RecordState::open}));
+                                   RecordState::skipped, RecordState::released, RecordState::released,
+                                   RecordState::open}));
 }
 
 TEST_F(LedgerHistoryTest, shouldCutWhatALaterRowCovers) {

@@ -37,6 +37,9 @@ struct Model {
             return state == RecordState::in_doubt ? std::optional{RecordState::skipped} : std::nullopt;
         case LedgerKind::released:
             return state == RecordState::in_doubt ? std::optional{RecordState::released} : std::nullopt;
+        case LedgerKind::reprint:
+            return state == RecordState::printed || state == RecordState::skipped ? std::optional{RecordState::released}
+                                                                                  : std::nullopt;
         case LedgerKind::run_started:
         case LedgerKind::run_ended:
             return state;
@@ -104,7 +107,7 @@ TEST(LedgerStateModel, shouldAgreeWithAStateForEachRecord) {
     std::mt19937_64 random{20240607};
     constexpr LedgerKind kinds[] = {LedgerKind::intent,     LedgerKind::printed, LedgerKind::unused,
                                     LedgerKind::in_doubt,   LedgerKind::skipped, LedgerKind::released,
-                                    LedgerKind::run_started};
+                                    LedgerKind::reprint,    LedgerKind::run_started};
     int applied = 0;
     for (int round = 0; round < 300; ++round) {
         LedgerState state;

@@ -73,6 +73,7 @@ const std::vector<Law>& laws() {
         {LedgerKind::in_doubt, in_doubt, {open}},
         {LedgerKind::skipped, skipped, {in_doubt}},
         {LedgerKind::released, released, {in_doubt}},
+        {LedgerKind::reprint, released, {printed, skipped}},
     };
     return all;
 }
@@ -102,7 +103,8 @@ TEST(LedgerState, shouldRefuseARowIfASingleRecordContradictsIt) {
             // The record beside the ten is made one that the row must not name.
             const RecordNumber odd{records.first().value() == 10 ? 10U : 21U};
             ASSERT_TRUE(state.apply(entry(LedgerKind::intent, RecordRange::closed(odd, odd))));
-            ASSERT_TRUE(state.apply(entry(LedgerKind::printed, RecordRange::closed(odd, odd))));
+            const LedgerKind fate = law.kind == LedgerKind::reprint ? LedgerKind::unused : LedgerKind::printed;
+            ASSERT_TRUE(state.apply(entry(fate, RecordRange::closed(odd, odd))));
             const LedgerState unchanged = state;
             EXPECT_FALSE(state.apply(entry(law.kind, records))) << to_string(law.kind);
             EXPECT_EQ(state, unchanged);

@@ -10,7 +10,7 @@ namespace {
 
 constexpr LedgerKind all_kinds[] = {LedgerKind::run_started, LedgerKind::intent,   LedgerKind::printed,
                                     LedgerKind::unused,      LedgerKind::in_doubt, LedgerKind::skipped,
-                                    LedgerKind::released,    LedgerKind::run_ended};
+                                    LedgerKind::released,    LedgerKind::reprint,  LedgerKind::run_ended};
 
 TEST(LedgerNames, shouldReadBackEveryKind) {
     std::set<std::string_view> names;

@@ -81,5 +81,48 @@ TEST_F(SchemaTest, shouldTakeOverTheJobsOfTheFirstSchema) {
     EXPECT_EQ(jobs->front().spec.source_sha256, "");
 }
 
+/// A ledger as linefeed wrote it before `reprint` was known, hashes included.
+TEST_F(SchemaTest, shouldTakeOverTheLedgerWithItsChain) {
+    {
+        auto database = Database::open(path.string(), {}).value();
+        for (const Migration& migration : migrations().first(2)) {
+            ASSERT_TRUE(database->execute(migration.sql).has_value());
+        }
+        ASSERT_TRUE(database->execute("PRAGMA user_version = 2").has_value());
+    }
+    ASSERT_EQ(sql("INSERT INTO jobs VALUES (1, '/data/names.csv', 1000, 77, 5, '', '{}', 0, 'ready', 10, 1, 'x', 1, '', '')"),
+              "");
+    const std::vector<LedgerEntry> entries{{LedgerKind::run_started, RunId{1}, range(1, 10), "{}"},
+                                           {LedgerKind::intent, RunId{1}, range(1, 10), ""},
+                                           {LedgerKind::printed, RunId{1}, range(1, 10), "it's so"},
+                                           {LedgerKind::run_ended, RunId{1}, {}, ""}};
+    std::string hash(64, '0');
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+        const LedgerEntry& entry = entries[i];
+        const auto sequence = static_cast<std::int64_t>(i + 1);
+        hash = ledger_hash(hash, sequence, JobId{1}, entry, 5);
+        const std::string quoted = i == 2 ? "it''s so" : entry.evidence;
+        ASSERT_EQ(sql("INSERT INTO ledger VALUES (" + std::to_string(sequence) + ", 1, '" +
+                      std::string{to_string(entry.kind)} + "', 1, " + std::to_string(entry.range.first().value()) +
+                      ", " + std::to_string(entry.range.count().value()) + ", '" + quoted + "', 5, x'" + hash + "')"),
+                  "");
+    }
+    ASSERT_EQ(sql("INSERT INTO ledger_segments VALUES (1, 1, 10, 'printed', 1)"), "");
+
+    Spool spool = open();
+    EXPECT_EQ(spool.verify_ledger().value(), 4);
+    const LedgerEntry again{LedgerKind::reprint, RunId{1}, range(3, 4), R"({"reason":"smudged"})"};
+    ASSERT_TRUE(spool.append(JobId{1}, {&again, 1}));
+    EXPECT_EQ(spool.verify_ledger().value(), 5);
+    EXPECT_EQ(spool.ledger_state(JobId{1})->next_printable(range(1, 10)), range(3, 4));
+    EXPECT_THAT(sql("UPDATE ledger SET run = 2"), HasSubstr("append-only"));
+    EXPECT_THAT(sql("DELETE FROM ledger"), HasSubstr("append-only"));
+    EXPECT_THAT(sql("INSERT INTO ledger SELECT 9, job, kind, run, first, records, evidence, time_ns, hash FROM ledger "
+                    "WHERE sequence = 1"),
+                HasSubstr("append-only"));
+    EXPECT_EQ(sql("PRAGMA foreign_key_check"), "");
+    EXPECT_EQ(sql("PRAGMA integrity_check"), "ok");
+}
+
 } // namespace
 } // namespace linefeed::spool

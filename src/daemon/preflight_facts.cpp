@@ -1,0 +1,43 @@
+// The conversation of a preflight, see preflight.hpp.
+#include "daemon/preflight.hpp"
+
+namespace linefeed::daemon {
+
+using protocol::Parameter;
+
+namespace {
+
+bool is_answered(const ClientSettings& settings) {
+    const auto second = PrinterClient::connect(settings);
+    return second && (*second)->ask<protocol::MachineStatus>(Parameter::RS).has_value();
+}
+
+} // namespace
+
+PreflightFacts gather_facts(const ClientSettings& settings) {
+    PreflightFacts facts;
+    const auto connected = PrinterClient::connect(settings);
+    if (!connected) {
+        facts.unreachable = connected.error().message;
+        return facts;
+    }
+    PrinterClient& printer = **connected;
+    facts.machine = printer.ask<protocol::MachineStatus>(Parameter::RS);
+    const bool talks = facts.machine && facts.machine->machine != protocol::MachineState::standby;
+    if (talks) { // in standby nothing else is answered
+        facts.version = printer.ask<protocol::VersionInfo>(Parameter::VS);
+        facts.job = printer.ask<protocol::JobName>(Parameter::JL);
+        if (printer.ask<protocol::MailStatus>(Parameter::SM)) { // may be one inquiry old
+            facts.mail = printer.ask<protocol::MailStatus>(Parameter::SM);
+        }
+        facts.counters = printer.ask<protocol::Counters>(Parameter::CC);
+        if (printer.open()) {
+            facts.second_connection = is_answered(settings);
+        }
+    }
+    facts.broke_off = !printer.open();
+    facts.oddities = printer.oddities();
+    return facts;
+}
+
+} // namespace linefeed::daemon

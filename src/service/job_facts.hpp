@@ -1,0 +1,46 @@
+// Where a job stands: put together from what the spool knows of it and whether a line is at it now.
+#pragma once
+
+#include "daemon/operations.hpp"
+#include "spool/spool.hpp"
+
+#include <map>
+#include <optional>
+#include <string>
+
+namespace linefeed::service {
+
+/// What the spool knows of a job.
+struct JobFacts {
+    spool::Job job;
+    std::optional<spool::Ticket> ticket;
+    spool::LedgerState ledger;
+
+    [[nodiscard]] RecordCount in(spool::RecordState state) const { return ledger.count(state); }
+    [[nodiscard]] RecordRange next() const { return ledger.next_printable(job.records); }
+    /// Something of it was granted to a run: it belongs to a printer.
+    [[nodiscard]] bool issued() const { return !ledger.segments().empty(); }
+    /// Name of its printer; empty = none.
+    [[nodiscard]] std::string printer() const { return ticket ? ticket->printer : std::string{}; }
+    /// As it is before anything is written.
+    [[nodiscard]] spool::Ticket ticket_or_new() const;
+};
+
+/// FailureKind::usage if there is no such job.
+[[nodiscard]] Result<JobFacts> read_facts(spool::Spool& spool, spool::JobId id);
+[[nodiscard]] Result<JobFacts> read_facts(spool::Spool& spool, spool::Job job);
+
+/// `live` = what its line does with it now; absent = nothing.
+[[nodiscard]] daemon::JobPhase phase_of(const JobFacts& facts, std::optional<daemon::JobPhase> live);
+
+/// Without its place in the queue.
+[[nodiscard]] daemon::JobView view_of(const JobFacts& facts, std::optional<daemon::JobPhase> live);
+
+/// "job 12".
+[[nodiscard]] std::string name_of(spool::JobId id);
+
+/// The places in the queue of a printer, from 1.
+using Places = std::map<spool::JobId, std::uint32_t>;
+[[nodiscard]] Result<Places> places_in(spool::Spool& spool, const std::string& printer);
+
+} // namespace linefeed::service

@@ -1,0 +1,139 @@
+// One printer as the service sees it: which job is on it, and the thread that carries out the operator's orders: asks
+// how far other jobs came, arms, prints run after run, and writes down why it ended. It starts nothing by itself.
+#pragma once
+
+#include "config/settings.hpp"
+#include "daemon/job_run.hpp"
+#include "daemon/operations.hpp"
+#include "daemon/preflight.hpp"
+#include "daemon/printer_commands.hpp"
+#include "service/event_log.hpp"
+#include "service/job_facts.hpp"
+#include "service/spool_access.hpp"
+
+#include <atomic>
+#include <condition_variable>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+
+namespace linefeed::service {
+
+/// The settings in force, and which printer of them it is about.
+using SharedSettings = std::shared_ptr<const config::Settings>;
+
+/// What all lines share. Must outlive them.
+struct LineServices {
+    daemon::RunThreads threads;
+    spool::Spool& spool; ///< for JobRun; everything else goes through `access`
+    SpoolAccess& access;
+    EventLog& events;
+    /// The line has nothing to do any more; called on its thread.
+    std::function<void(const std::string& printer)> on_idle;
+};
+
+/// How the last job on the line ended.
+struct Ending {
+    spool::JobId job{};
+    feeder::Outcome outcome;
+    std::string words;   ///< why, and what to do
+    bool said = false; ///< all is in the words: those of the outcome are not needed
+};
+
+/// Flow: construct; start() and stop() as the operator wants. Destroying it stops the line and waits for the truth.
+class Line {
+public:
+    Line(const LineServices& services, std::string printer, SharedSettings settings);
+    ~Line();
+    Line(const Line&) = delete;
+    Line& operator=(const Line&) = delete;
+
+    // Any thread; those that talk to the printer wait for its answers
+    /// For the next start.
+    void use(SharedSettings settings);
+    /// Begins to arm the job, which has a ticket of this printer that says so. FailureKind::stopped if the line is busy.
+    [[nodiscard]] Result<void> start(spool::JobId job);
+    /// Begins to stop what is armed or printed.
+    void request_stop();
+    /// Waits until nothing is armed or printed. How the last job ended, if there was one.
+    [[nodiscard]] std::optional<Ending> wait_until_idle();
+    /// The job that is armed or printed, and where it stands.
+    struct Active {
+        spool::JobId job{};
+        daemon::JobPhase phase = daemon::JobPhase::arming;
+    };
+    [[nodiscard]] std::optional<Active> active() const;
+    [[nodiscard]] bool idle() const { return !active(); }
+    /// Without its queue.
+    [[nodiscard]] daemon::PrinterView view();
+    [[nodiscard]] Result<std::vector<daemon::Finding>> preflight();
+    /// See daemon::acknowledge().
+    [[nodiscard]] Result<void> acknowledge(std::uint32_t error);
+    /// Holds the panel for so long from now, or releases it.
+    [[nodiscard]] Result<void> hold_panel(std::optional<Duration> time);
+    [[nodiscard]] const std::string& printer() const { return printer_; }
+    [[nodiscard]] const daemon::LineMeters& meters() const { return meters_; }
+    [[nodiscard]] const daemon::FrameHistory& frames() const { return frames_; }
+
+private:
+    // line.cpp: the thread and its orders
+    void serve();
+    [[nodiscard]] SharedSettings settings() const;
+    void event(std::string_view kind, std::optional<spool::JobId> job, std::string message,
+               std::optional<RecordNumber> record = {});
+
+    // line_printer.cpp: the printer besides printing
+    [[nodiscard]] Result<daemon::ClientSettings> client_settings() const;
+    [[nodiscard]] std::vector<daemon::Finding> look_at_printer(const daemon::ClientSettings& client,
+                                                               bool may_be_printing);
+    void hear(const daemon::PreflightFacts& facts);
+    void hear(const daemon::RunProgress& progress);
+
+    // line_printing.cpp: from the order to its end
+    void print(spool::JobId job);
+    [[nodiscard]] Result<Ending> print_runs(spool::JobId job);
+    [[nodiscard]] Result<daemon::JobRunSettings> run_settings(const spool::Job& job);
+    [[nodiscard]] Result<std::optional<Ending>> check_printer(spool::JobId job, bool may_be_printing);
+    [[nodiscard]] Ending run(const JobFacts& facts, RecordRange wanted, const std::optional<daemon::OpenIssue>& open,
+                             const daemon::JobRunSettings& settings);
+    void watch(daemon::JobRun& run, spool::JobId job);
+    void take_notice(const feeder::Notice& notice, spool::JobId job);
+    void conclude(const Ending& ending);
+
+    LineServices services_;
+    std::string printer_;
+    daemon::LineMeters meters_;
+    daemon::FrameHistory frames_;
+
+    mutable std::mutex mutex_; ///< for what follows
+    mutable std::condition_variable changed_;
+    SharedSettings settings_;
+    std::optional<spool::JobId> active_; ///< ordered, or under way
+    bool begun_ = false;                 ///< the thread has taken the order
+    bool checking_ = false;              ///< preflight
+    bool stop_requested_ = false;
+    bool closing_ = false;
+    daemon::JobRun* run_ = nullptr;      ///< under way
+    std::optional<RecordRange> records_; ///< of the job that is on the line
+    bool supply_low_ = false;
+    std::optional<Ending> last_ending_;
+    /// As last heard of, by whatever way.
+    struct Heard {
+        std::int64_t at_ns = 0; ///< wall time; 0 = never
+        std::optional<protocol::MachineStatus> machine;
+        std::optional<protocol::VersionInfo> version;
+        std::optional<std::uint32_t> total_prints;
+    };
+    Heard heard_;
+
+    std::mutex panel_mutex_; ///< for what follows, also while the printer is talked to
+    std::unique_ptr<daemon::PanelHold> panel_;
+    std::atomic<bool> panel_held_{false};
+
+    std::thread thread_;
+};
+
+} // namespace linefeed::service

@@ -1,0 +1,104 @@
+// The printer besides printing: a look at it before a start or for whoever asks, one error acknowledged, the panel held.
+// Each is a short conversation on a connection of its own.
+#include "daemon/wall_clock.hpp"
+#include "service/line.hpp"
+
+#include <chrono>
+
+namespace linefeed::service {
+
+Result<daemon::ClientSettings> Line::client_settings() const {
+    const SharedSettings all = settings();
+    const config::PrinterSettings* const own = all->printer(printer_);
+    if (own == nullptr) {
+        return Failure{FailureKind::stopped, "printer " + printer_ + " is being taken away"};
+    }
+    auto endpoints = link::resolve(own->address);
+    if (!endpoints) {
+        return endpoints.error();
+    }
+    return daemon::ClientSettings{.address = link::to_string(own->address),
+                                  .endpoints = std::move(*endpoints),
+                                  .escapes = own->profile.escapes,
+                                  .connect_timeout = own->connect_timeout,
+                                  .reply_timeout = own->reply_timeout};
+}
+
+std::vector<daemon::Finding> Line::look_at_printer(const daemon::ClientSettings& client, bool may_be_printing) {
+    const SharedSettings all = settings();
+    std::string known_serial_number;
+    {
+        const std::lock_guard lock{mutex_};
+        known_serial_number = heard_.version ? heard_.version->serial_number : "";
+    }
+    const daemon::PreflightFacts facts = daemon::gather_facts(client);
+    hear(facts);
+    return daemon::judge(facts, {*all, *all->printer(printer_), known_serial_number, may_be_printing});
+}
+
+Result<std::vector<daemon::Finding>> Line::preflight() {
+    const auto client = client_settings();
+    return client ? Result<std::vector<daemon::Finding>>{look_at_printer(*client, !idle())} : client.error();
+}
+
+Result<void> Line::acknowledge(std::uint32_t error) {
+    const auto client = client_settings();
+    if (!client) {
+        return client.error();
+    }
+    const auto left = daemon::acknowledge(*client, error);
+    if (!left) {
+        return left.error();
+    }
+    const std::lock_guard lock{mutex_};
+    if (heard_.machine) {
+        heard_.machine->error = *left;
+    }
+    return {};
+}
+
+Result<void> Line::hold_panel(std::optional<Duration> time) {
+    const std::lock_guard lock{panel_mutex_};
+    if (!time) {
+        panel_.reset(); // releases
+        panel_held_ = false;
+        return {};
+    }
+    if (!panel_) {
+        const auto client = client_settings();
+        if (!client) {
+            return client.error();
+        }
+        panel_ = std::make_unique<daemon::PanelHold>(*client);
+    }
+    auto held = panel_->hold(*time);
+    panel_held_ = held.has_value();
+    return held;
+}
+
+/// With mutex_ held.
+void Line::hear(const daemon::RunProgress& progress) {
+    if (!progress.machine || !progress.heard_at) {
+        return;
+    }
+    const auto now = std::chrono::steady_clock::now().time_since_epoch();
+    const Duration ago = now - progress.heard_at->time_since_epoch();
+    heard_.at_ns = daemon::wall_clock_ns() - ago.count();
+    heard_.machine = progress.machine;
+}
+
+void Line::hear(const daemon::PreflightFacts& facts) {
+    const std::lock_guard lock{mutex_};
+    if (facts.machine) {
+        heard_.at_ns = daemon::wall_clock_ns();
+        heard_.machine = facts.machine;
+    }
+    if (facts.version) {
+        heard_.version = facts.version;
+    }
+    if (facts.counters && facts.counters->total) {
+        heard_.total_prints = facts.counters->total;
+    }
+}
+
+} // namespace linefeed::service

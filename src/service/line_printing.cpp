@@ -1,0 +1,297 @@
+// From the order to print a job to the reason why it ended. The same steps as `linefeed print`, without a terminal: what
+// an operator has to decide is left to him.
+#include "daemon/events.hpp"
+#include "daemon/other_jobs.hpp"
+#include "daemon/record_text.hpp"
+#include "service/line.hpp"
+
+#include <algorithm>
+
+namespace linefeed::service {
+
+namespace event_kind = daemon::event_kind;
+using daemon::JobRun;
+using daemon::OpenIssue;
+using feeder::OutcomeCode;
+using spool::RecordState;
+
+namespace {
+
+/// What is known of the job before a run, and of the records that an earlier run has left open.
+struct Before {
+    JobFacts facts;
+    std::optional<OpenIssue> open;
+};
+
+Result<Before> look(SpoolAccess& access, spool::JobId job) {
+    return access.write([job](spool::Spool& spool) -> Result<Before> {
+        auto facts = read_facts(spool, job);
+        auto open = daemon::find_open_issue(spool, job);
+        if (!facts || !open) {
+            return facts ? open.error() : facts.error();
+        }
+        return Before{std::move(*facts), std::move(*open)};
+    });
+}
+
+/// An earlier run that may still be printing can be gone on with up to where it was to end.
+RecordRange wanted_records(const Before& before) {
+    const RecordRange all = before.facts.job.records;
+    return before.open ? RecordRange::closed(all.first(), before.open->run_range.last()) : all;
+}
+
+/// The nearest word for what the look at the printer has found.
+OutcomeCode outcome_of(const daemon::Finding& finding) {
+    if (finding.check == "reachable") {
+        return OutcomeCode::unreachable;
+    }
+    if (finding.check == "cover") {
+        return OutcomeCode::cover_open;
+    }
+    return finding.check == "errors" ? OutcomeCode::error_pending : OutcomeCode::not_ready;
+}
+
+} // namespace
+
+void Line::print(spool::JobId job) {
+    auto ending = print_runs(job);
+    if (!ending) {
+        const bool reachable = ending.error().kind != FailureKind::unreachable;
+        const OutcomeCode code = reachable ? OutcomeCode::storage_failed : OutcomeCode::unreachable;
+        ending = Ending{job, {.code = code, .issued = false}, ending.error().message};
+    }
+    conclude(*ending);
+}
+
+Result<daemon::JobRunSettings> Line::run_settings(const spool::Job& job) {
+    const SharedSettings all = settings();
+    const config::PrinterSettings& own = *all->printer(printer_);
+    const auto endpoints = link::resolve(own.address);
+    if (!endpoints) {
+        return endpoints.error();
+    }
+    daemon::JobRunSettings settings;
+    settings.printer = own.address;
+    settings.endpoints = *endpoints;
+    settings.connect_timeout = own.connect_timeout;
+    settings.meters = &meters_;
+    settings.frames = &frames_;
+    settings.session.escapes = own.profile.escapes;
+    settings.session.charsets = daemon::record_format(job).charsets;
+    settings.session.reply_timeout = own.reply_timeout;
+    settings.session.feeder.pacing = own.pacing;
+    settings.session.feeder.open_nozzle = own.open_nozzle;
+    settings.session.feeder.acknowledge = all->acknowledged(own);
+    settings.session.feeder.stop_on = all->stopping(own);
+    return settings;
+}
+
+/// One run after the other until nothing is left to print, or something stands in the way.
+Result<Ending> Line::print_runs(spool::JobId job) {
+    auto before = look(services_.access, job);
+    if (!before) {
+        return before.error();
+    }
+    const auto settings = run_settings(before->facts.job);
+    if (!settings) {
+        return settings.error();
+    }
+    const auto hindrance = daemon::settle_other_jobs(
+        services_.threads, services_.spool, job, *settings, [this, job](JobRun& run, spool::JobId other) {
+            event(event_kind::printer_notice, other, "may have records in this printer: asking how far it came");
+            watch(run, job);
+        });
+    if (!hindrance) {
+        return hindrance.error();
+    }
+    if (*hindrance) {
+        return Ending{job, (*hindrance)->outcome, (*hindrance)->detail};
+    }
+    if (auto hindered = check_printer(job, before->open.has_value()); !hindered || *hindered) {
+        return hindered ? Result<Ending>{std::move(**hindered)} : hindered.error();
+    }
+    Ending ending{job, {.code = OutcomeCode::nothing_to_print, .issued = false}, {}};
+    while (true) {
+        before = look(services_.access, job);
+        if (!before) {
+            return before.error();
+        }
+        const bool told = !before->open;
+        if (told && before->facts.in(RecordState::in_doubt) > RecordCount{0}) {
+            ending.outcome.code = OutcomeCode::records_in_doubt;
+            return ending;
+        }
+        if (told && before->facts.next().empty()) {
+            ending.outcome.code = OutcomeCode::finished;
+            return ending;
+        }
+        {
+            const std::lock_guard lock{mutex_};
+            if (stop_requested_) {
+                ending.outcome.code = OutcomeCode::stop_requested;
+                return ending;
+            }
+        }
+        ending = run(before->facts, wanted_records(*before), before->open, *settings);
+        const bool goes_on =
+            ending.outcome.code == OutcomeCode::finished ||
+            (ending.outcome.code == OutcomeCode::records_in_doubt && !ending.outcome.issued) ||
+            (ending.outcome.code == OutcomeCode::nothing_to_print && before->open); // the earlier run printed all
+        if (!goes_on) {
+            return ending;
+        }
+    }
+}
+
+/// The look at the printer before the start; each finding that is not good is told. What stands in the way; absent =
+/// nothing does.
+Result<std::optional<Ending>> Line::check_printer(spool::JobId job, bool may_be_printing) {
+    const auto client = client_settings();
+    if (!client) {
+        return client.error();
+    }
+    {
+        const std::lock_guard lock{mutex_};
+        checking_ = true;
+    }
+    const std::vector<daemon::Finding> findings = look_at_printer(*client, may_be_printing);
+    {
+        const std::lock_guard lock{mutex_};
+        checking_ = false;
+    }
+    std::optional<Ending> ending;
+    for (const daemon::Finding& finding : findings) {
+        const std::string words = finding.words + (finding.advice.empty() ? "" : ". " + finding.advice);
+        switch (finding.severity) {
+        case daemon::Severity::ok:
+            break;
+        case daemon::Severity::warning:
+            event(event_kind::printer_warning, job, words);
+            break;
+        case daemon::Severity::problem:
+            event(event_kind::printer_error, job, words);
+            if (!ending) {
+                ending = Ending{job, {.code = outcome_of(finding), .issued = false}, words, true};
+            }
+            break;
+        }
+    }
+    return ending;
+}
+
+Ending Line::run(const JobFacts& facts, RecordRange wanted, const std::optional<OpenIssue>& open,
+                 const daemon::JobRunSettings& settings) {
+    JobRun run{services_.threads, services_.spool, facts.job, wanted, open, settings};
+    {
+        const std::lock_guard lock{mutex_};
+        records_ = facts.job.records;
+    }
+    run.start();
+    watch(run, facts.job.id);
+    run.join();
+    return {facts.job.id, run.outcome(), run.detail()};
+}
+
+/// Until the run is finished. A stop that was asked for before it reaches it as well.
+void Line::watch(JobRun& run, spool::JobId job) {
+    constexpr int wait_ms = 200;
+    {
+        const std::lock_guard lock{mutex_};
+        run_ = &run;
+        if (stop_requested_) {
+            run.request_stop();
+        }
+    }
+    while (!run.finished()) {
+        run.wait(wait_ms);
+        for (const feeder::Notice& notice : run.take_notices()) {
+            take_notice(notice, job);
+        }
+    }
+    const std::lock_guard lock{mutex_};
+    hear(run.progress());
+    run_ = nullptr;
+}
+
+void Line::take_notice(const feeder::Notice& notice, spool::JobId job) {
+    using feeder::NoticeCode;
+    switch (notice.code) {
+    case NoticeCode::printing_started:
+        event(event_kind::job_printing, job, "printing");
+        return;
+    case NoticeCode::supply_low: {
+        const std::lock_guard lock{mutex_};
+        supply_low_ = true;
+        break;
+    }
+    case NoticeCode::printer_warning:
+    case NoticeCode::error_acknowledged:
+    case NoticeCode::stop_point_ignored:
+    case NoticeCode::entries_differ:
+        break;
+    case NoticeCode::taken_over:
+    case NoticeCode::found_printing:
+    case NoticeCode::nozzle_opening:
+        event(event_kind::printer_notice, job, feeder::describe(notice));
+        return;
+    }
+    event(event_kind::printer_warning, job, feeder::describe(notice));
+}
+
+namespace {
+
+bool shows_error(OutcomeCode code) {
+    return code == OutcomeCode::printer_error || code == OutcomeCode::error_pending;
+}
+
+} // namespace
+
+/// Writes down why it ended. The ledger says where it stands; here is only what a person needs besides.
+void Line::conclude(const Ending& given) {
+    Ending ending = given;
+    const std::string detail = ending.words;
+    if (!ending.said) {
+        ending.words = feeder::describe(ending.outcome) + (detail.empty() ? "" : ": " + detail);
+    }
+    const auto after = services_.access.write([&](spool::Spool& spool) -> Result<JobFacts> {
+        auto facts = read_facts(spool, ending.job);
+        if (!facts) {
+            return facts;
+        }
+        spool::Ticket ticket = facts->ticket_or_new();
+        const bool finished = phase_of(*facts, {}) == daemon::JobPhase::finished;
+        ticket.begun = !finished;
+        ticket.message = finished ? "" : ending.words;
+        if (finished) {
+            ticket.place.reset();
+        }
+        auto written = spool.write_ticket(ticket);
+        return written ? std::move(facts) : Result<JobFacts>{written.error()};
+    });
+    {
+        const std::lock_guard lock{mutex_};
+        last_ending_ = ending;
+        supply_low_ = false;
+    }
+    if (!after) {
+        event(event_kind::storage_failed, ending.job, after.error().message);
+        return;
+    }
+    const daemon::JobView view = view_of(*after, {});
+    if (shows_error(ending.outcome.code)) {
+        event(event_kind::printer_error, ending.job, ending.words);
+    }
+    switch (view.phase) {
+    case daemon::JobPhase::finished:
+        event(event_kind::job_finished, ending.job, "every record is printed", view.last_printed);
+        return;
+    case daemon::JobPhase::in_doubt:
+        event(event_kind::job_in_doubt, ending.job, ending.words, view.last_printed);
+        return;
+    default:
+        event(event_kind::job_stopped, ending.job, ending.words, view.last_printed);
+        return;
+    }
+}
+
+} // namespace linefeed::service

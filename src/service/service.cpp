@@ -1,0 +1,189 @@
+#include "service/service.hpp"
+
+#include "base/assert.hpp"
+#include "daemon/events.hpp"
+#include "daemon/wall_clock.hpp"
+
+namespace linefeed::service {
+
+namespace event_kind = daemon::event_kind;
+using daemon::JobPhase;
+
+Service::Service(ServiceOptions options, spool::Spool spool)
+    : load_(std::move(options.load))
+    , version_(std::move(options.version))
+    , started_ns_(daemon::wall_clock_ns())
+    , spool_(std::move(spool))
+    , feed_(options.settings.real_time)
+    , store_(spool_)
+    , access_(store_, options.settings.spool)
+    , events_(store_, std::move(options.listen))
+    , settings_(std::make_shared<const config::Settings>(std::move(options.settings))) {
+    real_time_ = feed_.start();
+}
+
+Result<std::unique_ptr<Service>> Service::open(ServiceOptions options) {
+    auto spool = spool::Spool::open(options.settings.spool, {daemon::wall_clock_ns, {}});
+    if (!spool) {
+        return spool.error();
+    }
+    std::unique_ptr<Service> service{new Service{std::move(options), std::move(*spool)}};
+    if (auto recovered = service->recover(); !recovered) {
+        return recovered.error();
+    }
+    service->event(event_kind::service_started, {}, {}, "linefeedd " + service->version_ + " has started");
+    service->open_lines();
+    service->open_folders();
+    for (const LinePtr& line : service->lines()) {
+        service->look_for_work(line->printer());
+    }
+    return service;
+}
+
+Service::~Service() {
+    shut_down();
+}
+
+/// Nothing prints now. What was under way when the service ended stands, and says so already; what was over by then, and
+/// not yet written down, is over.
+Result<void> Service::recover() {
+    return access_.write([](spool::Spool& spool) -> Result<void> {
+        auto begun = spool.begun_jobs();
+        if (!begun) {
+            return begun.error();
+        }
+        for (spool::Ticket& ticket : *begun) {
+            const auto facts = read_facts(spool, ticket.job);
+            if (!facts) {
+                return facts.error();
+            }
+            if (phase_of(*facts, {}) != JobPhase::finished) {
+                continue;
+            }
+            ticket.begun = false;
+            ticket.place.reset();
+            ticket.message.clear();
+            if (auto written = spool.write_ticket(ticket); !written) {
+                return written;
+            }
+        }
+        return {};
+    });
+}
+
+void Service::open_lines() {
+    const LineServices services{{feed_, store_}, spool_, access_, events_,
+                                [this](const std::string& printer) { look_for_work(printer); }};
+    const std::lock_guard lock{parts_mutex_};
+    for (const config::PrinterSettings& printer : settings_->printers) {
+        if (!lines_.contains(printer.name)) {
+            lines_.emplace(printer.name, std::make_shared<Line>(services, printer.name, settings_));
+        }
+    }
+}
+
+void Service::open_folders() {
+    const FolderServices services{access_, events_, counts_,
+                                  [this](const std::string& printer) { look_for_work(printer); }};
+    const std::lock_guard lock{parts_mutex_};
+    for (const config::FolderSettings& folder : settings_->folders) {
+        folders_.push_back(std::make_shared<Folder>(services, folder, *settings_));
+    }
+}
+
+void Service::shut_down() {
+    {
+        const std::lock_guard lock{orders_};
+        if (std::exchange(closing_, true)) {
+            return;
+        }
+    }
+    event(event_kind::service_stopping, {}, {}, "linefeedd ends");
+    std::vector<FolderPtr> folders;
+    {
+        const std::lock_guard lock{parts_mutex_};
+        folders.swap(folders_);
+    }
+    const std::vector<LinePtr> all = lines();
+    for (const LinePtr& line : all) {
+        line->request_stop();
+    }
+    folders.clear();
+    for (const LinePtr& line : all) {
+        static_cast<void>(line->wait_until_idle());
+    }
+}
+
+void Service::tick() {
+    // While nothing is printed, nobody else copies the write-ahead log.
+    static_cast<void>(access_.write([](spool::Spool& spool) { return spool.checkpoint(); }));
+}
+
+std::vector<daemon::Heart> Service::hearts() const {
+    return {{"feed thread", [this] { return feed_.beats(); }}, {"store thread", [this] { return store_.beats(); }}};
+}
+
+SharedSettings Service::settings() const {
+    const std::lock_guard lock{parts_mutex_};
+    return settings_;
+}
+
+Service::LinePtr Service::line(std::string_view printer) const {
+    const std::lock_guard lock{parts_mutex_};
+    const auto found = lines_.find(printer);
+    return found == lines_.end() ? nullptr : found->second;
+}
+
+std::vector<Service::LinePtr> Service::lines() const {
+    const std::lock_guard lock{parts_mutex_};
+    std::vector<LinePtr> all;
+    for (const auto& [name, line] : lines_) {
+        all.push_back(line);
+    }
+    return all;
+}
+
+Result<Service::LinePtr> Service::known_line(std::string_view printer) const {
+    if (LinePtr found = line(printer)) {
+        return found;
+    }
+    std::string names;
+    for (const LinePtr& there : lines()) {
+        names += (names.empty() ? "" : ", ") + there->printer();
+    }
+    return Failure{FailureKind::usage, "there is no printer \"" + std::string{printer} + '"' +
+                                           (names.empty() ? "" : "; there is: " + names)};
+}
+
+std::optional<JobPhase> Service::live_phase(spool::JobId id) const {
+    for (const LinePtr& line : lines()) {
+        if (const auto active = line->active(); active && active->job == id) {
+            return active->phase;
+        }
+    }
+    return std::nullopt;
+}
+
+void Service::event(std::string_view kind, const std::string& printer, std::optional<spool::JobId> job,
+                    std::string message) {
+    events_.add({.kind = std::string{kind}, .printer = printer, .job = job, .message = std::move(message)});
+}
+
+void Service::write_audit(const daemon::Caller& caller, const Act& act, const std::optional<Failure>& refused) {
+    spool::AuditEntry entry;
+    entry.time_ns = daemon::wall_clock_ns();
+    entry.who = caller.name;
+    entry.what = act.what;
+    entry.object = act.object;
+    spool::JsonObject detail = act.detail;
+    if (refused) {
+        detail.add("refused", refused->message);
+    }
+    entry.detail = detail.text();
+    entry.done = !refused;
+    if (auto written = access_.write([&](spool::Spool& spool) { return spool.add_audit(entry); }); !written) {
+        event(event_kind::storage_failed, {}, {}, "the audit log cannot be written: " + written.error().message);
+    }
+}
+
+} // namespace linefeed::service

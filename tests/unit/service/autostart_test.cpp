@@ -1,0 +1,208 @@
+// What starts by itself, and what never does: only jobs that were never begun, where both the queue and the job allow
+// it, and only while nothing else of the printer stands.
+#include "service_fixture.hpp"
+
+namespace linefeed::service {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+using testing::Not;
+using testing::SizeIs;
+
+class AutostartTest : public ServiceTest {
+protected:
+    void SetUp() override {
+        ServiceTest::SetUp();
+        std::filesystem::create_directory(folder());
+    }
+    [[nodiscard]] std::filesystem::path folder() const { return directory_ / "in"; }
+    [[nodiscard]] std::string settings(const std::string& address) const {
+        return settings_text({address}, ", queue: {autostart: true}",
+                             "folders:\n  in: {path: " + folder().string() +
+                                 ", layout: serials, printer: line1, autostart: true, settle: rename}\n");
+    }
+    /// As a plant does it: written elsewhere, renamed into place.
+    void drop(const std::string& name, std::uint32_t count, std::uint32_t first) const {
+        std::filesystem::rename(file(name, count, first), folder() / name);
+    }
+    /// The job of that name, once it is there.
+    spool::JobId job_named(const std::string& name) {
+        spool::JobId found{};
+        EXPECT_TRUE(wait_until([&] {
+            for (const daemon::JobView& job : service_->jobs({.limit = 1000}).value()) {
+                found = job.name == name ? job.id : found;
+            }
+            return found != spool::JobId{};
+        })) << name;
+        return found;
+    }
+};
+
+TEST_F(AutostartTest, shouldPrintWhatIsDroppedInTheOrderInWhichItCame) {
+    SimulatedPrinter printer{directory_ / "tape.csv", 1000};
+    open(settings(printer.address()));
+    for (std::uint32_t i = 0; i < 5; ++i) {
+        const std::string name = "batch" + std::to_string(i) + ".csv";
+        drop(name, 20, 1 + 20 * i);
+        ASSERT_NE(job_named(name), spool::JobId{});
+    }
+    ASSERT_TRUE(comes_to(job_named("batch4.csv"), JobPhase::finished));
+    EXPECT_EQ(view(job_named("batch0.csv")).created_by, "folder in");
+    EXPECT_EQ(view(job_named("batch0.csv")).layout, "serials");
+    const auto folders = service_->folders();
+    ASSERT_THAT(folders, SizeIs(1));
+    EXPECT_EQ(folders.front().imported, 5U);
+    EXPECT_TRUE(folders.front().works);
+    EXPECT_TRUE(std::filesystem::exists(folder() / "done" / "batch4.csv"));
+    service_.reset();
+    EXPECT_EQ(printer.products(), serials(1, 100));
+}
+
+TEST_F(AutostartTest, shouldHoldTheQueueBackWhileAJobOfThePrinterStands) {
+    SimulatedPrinter printer{directory_ / "tape.csv", 300};
+    open(settings(printer.address()));
+    drop("a.csv", 400, 1);
+    const spool::JobId a = job_named("a.csv");
+    ASSERT_TRUE(prints_through(a, 30));
+    drop("b.csv", 20, 401);
+    const spool::JobId b = job_named("b.csv");
+    ASSERT_TRUE(service_->stop(anna, "line1"));
+    std::this_thread::sleep_for(std::chrono::milliseconds{300});
+    EXPECT_EQ(view(a).phase, JobPhase::stopped);
+    EXPECT_EQ(view(b).phase, JobPhase::queued);
+    ASSERT_TRUE(service_->start(anna, a));
+    ASSERT_TRUE(comes_to(b, JobPhase::finished)); // by itself, behind a
+    service_.reset();
+    EXPECT_EQ(printer.products(), serials(1, 420));
+}
+
+TEST_F(AutostartTest, shouldGoOnWithTheQueueWhenTheJobThatStandsIsCancelled) {
+    SimulatedPrinter printer{directory_ / "tape.csv", 300};
+    open(settings(printer.address()));
+    drop("a.csv", 1000, 1);
+    const spool::JobId a = job_named("a.csv");
+    ASSERT_TRUE(prints_through(a, 10));
+    ASSERT_TRUE(service_->stop(anna, "line1"));
+    const std::uint32_t printed = view(a).last_printed.value().value();
+    drop("b.csv", 20, 2001);
+    const spool::JobId b = job_named("b.csv");
+    EXPECT_EQ(view(b).phase, JobPhase::queued);
+    ASSERT_TRUE(service_->cancel(anna, a));
+    ASSERT_TRUE(comes_to(b, JobPhase::finished));
+    service_.reset();
+    std::vector<std::string> expected = serials(1, printed);
+    for (const std::string& text : serials(2001, 2020)) {
+        expected.push_back(text);
+    }
+    EXPECT_EQ(printer.products(), expected);
+}
+
+TEST_F(AutostartTest, shouldNotLetAJobThatMayNotStartByItselfBeOvertaken) {
+    SimulatedPrinter printer{directory_ / "tape.csv", 1000};
+    open(settings(printer.address()));
+    const spool::JobId asked = import(10, 1, "line1", false);
+    drop("b.csv", 10, 11);
+    const spool::JobId b = job_named("b.csv");
+    std::this_thread::sleep_for(std::chrono::milliseconds{300});
+    EXPECT_EQ(view(b).phase, JobPhase::queued);
+    ASSERT_TRUE(service_->start(anna, asked));
+    ASSERT_TRUE(comes_to(b, JobPhase::finished));
+    service_.reset();
+    EXPECT_EQ(printer.products(), serials(1, 20));
+}
+
+TEST_F(AutostartTest, shouldComeBackStandingAndPrintNothingByItself) {
+    SimulatedPrinter printer{directory_ / "tape.csv", 300};
+    open(settings(printer.address()));
+    drop("a.csv", 500, 1);
+    const spool::JobId a = job_named("a.csv");
+    ASSERT_TRUE(prints_through(a, 50));
+    drop("b.csv", 20, 501);
+    const spool::JobId b = job_named("b.csv");
+    service_.reset(); // in the middle
+    open(settings(printer.address()));
+    EXPECT_EQ(view(a).phase, JobPhase::stopped);
+    EXPECT_EQ(view(a).open, RecordCount{0});
+    const RecordCount printed = view(a).printed;
+    std::this_thread::sleep_for(std::chrono::milliseconds{500});
+    EXPECT_EQ(view(a).phase, JobPhase::stopped);
+    EXPECT_EQ(view(a).printed, printed);
+    EXPECT_EQ(view(b).phase, JobPhase::queued);
+    ASSERT_TRUE(service_->start_next(anna, "line1"));
+    ASSERT_TRUE(comes_to(b, JobPhase::finished));
+    service_.reset();
+    EXPECT_EQ(printer.products(), serials(1, 520));
+}
+
+TEST_F(AutostartTest, shouldStartAtTheStartOfTheServiceWhatWasNeverBegun) {
+    std::string address;
+    {
+        SimulatedPrinter printer{directory_ / "tape.csv", 1000};
+        address = printer.address();
+        open(settings_text({address}, {},
+                           "folders:\n  in: {path: " + folder().string() + ", layout: serials, printer: line1}\n"));
+        static_cast<void>(import(20, 1, "line1", true));
+        service_.reset();
+        open(settings(address));
+        EXPECT_TRUE(wait_until([&] { return service_->jobs({.phases = {JobPhase::finished}})->size() == 1; }));
+        service_.reset();
+        EXPECT_EQ(printer.products(), serials(1, 20));
+    }
+}
+
+TEST_F(AutostartTest, shouldNotTryAgainByItselfWhatCouldNotBeStarted) {
+    std::string port;
+    {
+        SimulatedPrinter gone{directory_ / "gone.csv", 1000};
+        port = gone.port();
+    }
+    open(settings("127.0.0.1:" + port));
+    drop("a.csv", 10, 1);
+    const spool::JobId a = job_named("a.csv");
+    ASSERT_TRUE(comes_to(a, JobPhase::stopped));
+    SimulatedPrinter printer{directory_ / "tape.csv", 1000, port};
+    drop("b.csv", 10, 11);
+    const spool::JobId b = job_named("b.csv");
+    std::this_thread::sleep_for(std::chrono::milliseconds{300});
+    EXPECT_EQ(view(a).phase, JobPhase::stopped);
+    EXPECT_EQ(view(b).phase, JobPhase::queued);
+    service_.reset();
+    open(settings("127.0.0.1:" + port));
+    std::this_thread::sleep_for(std::chrono::milliseconds{300});
+    EXPECT_EQ(view(a).phase, JobPhase::stopped) << "not after a restart either";
+    ASSERT_TRUE(service_->start(anna, a));
+    ASSERT_TRUE(comes_to(b, JobPhase::finished));
+    service_.reset();
+    EXPECT_EQ(printer.products(), serials(1, 20));
+}
+
+TEST_F(AutostartTest, shouldSayWhyAFolderCannotBeUsedAndTakeItUpWhenItCan) {
+    std::filesystem::remove(folder());
+    open(settings("127.0.0.1:1"));
+    EXPECT_TRUE(wait_until([&] { return !service_->folders().front().works; }));
+    EXPECT_THAT(service_->folders().front().message, HasSubstr(folder().string()));
+    EXPECT_TRUE(wait_until([&] { return testing::Value(event_kinds(), Contains("folder.down")); }));
+    EXPECT_TRUE(service_->status().ready) << "the lines go on";
+}
+
+TEST_F(AutostartTest, shouldReportADuplicateAndRejectABadFile) {
+    SimulatedPrinter printer{directory_ / "tape.csv", 1000};
+    open(settings(printer.address()));
+    drop("a.csv", 10, 1);
+    ASSERT_TRUE(comes_to(job_named("a.csv"), JobPhase::finished));
+    drop("copy.csv", 10, 1);
+    std::ofstream{directory_ / "bad.csv"} << "name\nx\n";
+    std::filesystem::rename(directory_ / "bad.csv", folder() / "bad.csv");
+    EXPECT_TRUE(wait_until([&] {
+        const auto view = service_->folders().front();
+        return view.duplicates == 1 && view.failed == 1;
+    }));
+    EXPECT_TRUE(std::filesystem::exists(folder() / "failed" / "bad.csv"));
+    EXPECT_THAT(service_->jobs({}).value(), SizeIs(1));
+    service_.reset();
+    EXPECT_EQ(printer.products(), serials(1, 10));
+}
+
+} // namespace
+} // namespace linefeed::service
