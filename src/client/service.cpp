@@ -34,7 +34,7 @@ Result<api::ServiceAddress> from_url(std::string_view url) {
     }
     std::string_view rest = url;
     if (!rest.starts_with(http)) {
-        return usage("--url " + std::string{url} + ": expected http://HOST:PORT");
+        return usage("--url " + std::string{url} + ": expected http://HOST:PORT, without a path");
     }
     rest.remove_prefix(http.size());
     if (rest.ends_with('/')) {
@@ -42,7 +42,7 @@ Result<api::ServiceAddress> from_url(std::string_view url) {
     }
     auto address = api::parse_service_address("tcp://" + std::string{rest});
     if (!address) {
-        return usage("--url " + std::string{url} + ": expected http://HOST:PORT");
+        return usage("--url " + std::string{url} + ": expected http://HOST:PORT, without a path");
     }
     return address;
 }

@@ -1,6 +1,7 @@
 #include "api/views.hpp"
 #include "client/job_source.hpp"
 #include "client/json_fields.hpp"
+#include "daemon/job_facts.hpp"
 #include "daemon/record_text.hpp"
 #include "spool/ledger_history.hpp"
 #include "spool/spool.hpp"
@@ -11,50 +12,8 @@ namespace linefeed::client {
 
 namespace {
 
-using daemon::JobPhase;
-using spool::RecordState;
-
 constexpr std::size_t rows_at_once = 4096;
-
-/// Where a job stands that no service looks after.
-JobPhase phase_of(const spool::Job& job, const spool::LedgerState& state) {
-    if (job.state == spool::ImportState::importing) {
-        return JobPhase::importing;
-    }
-    if (state.count(RecordState::in_doubt) > RecordCount{0}) {
-        return JobPhase::in_doubt;
-    }
-    if (state.segments().empty()) {
-        return JobPhase::ready;
-    }
-    const bool over = state.next_printable(job.records).empty() && state.count(RecordState::open) == RecordCount{0};
-    return over && job.state == spool::ImportState::ready ? JobPhase::finished : JobPhase::stopped;
-}
-
-Json view_of(const spool::Job& job, const spool::LedgerState& state) {
-    daemon::JobView view;
-    view.id = job.id;
-    view.source = job.spec.source.path;
-    view.name = std::filesystem::path{view.source}.filename().string();
-    view.phase = phase_of(job, state);
-    if (job.state == spool::ImportState::stopped) {
-        view.message = "a row that cannot be printed has ended its import";
-    } else if (state.count(RecordState::open) > RecordCount{0}) {
-        view.message = "being printed, or broken off: linefeed print asks the printer how far it is";
-    }
-    view.records = job.records;
-    view.printed = state.count(RecordState::printed);
-    view.in_doubt = state.count(RecordState::in_doubt);
-    view.open = state.count(RecordState::open);
-    view.skipped = state.count(RecordState::skipped);
-    if (const auto printed = state.ranges(RecordState::printed); !printed.empty()) {
-        view.last_printed = printed.back().last();
-    }
-    view.next = state.next_printable(job.records);
-    view.created_ns = job.created_ns;
-    view.created_by = "linefeed";
-    return api::to_json(view);
-}
+constexpr std::size_t jobs_at_once = 100;
 
 class SpoolSource final : public JobSource {
 public:
@@ -71,7 +30,7 @@ public:
 
 private:
     Result<spool::Job> find(std::int64_t id);
-    Result<Json> view(const spool::Job& job);
+    Result<Json> view(const spool::Job& job, daemon::JobViews& views);
 
     spool::Spool spool_;
     std::filesystem::path file_;
@@ -89,36 +48,49 @@ Result<spool::Job> SpoolSource::find(std::int64_t id) {
     return std::move(**job);
 }
 
-Result<Json> SpoolSource::view(const spool::Job& job) {
-    const auto state = spool_.ledger_state(job.id);
-    if (!state) {
-        return state.error();
+Result<Json> SpoolSource::view(const spool::Job& job, daemon::JobViews& views) {
+    const auto facts = daemon::read_facts(spool_, job);
+    if (!facts) {
+        return facts.error();
     }
-    return json_result(view_of(job, *state));
+    auto view = views.view(*facts);
+    if (!view) {
+        return view.error();
+    }
+    if (view->open > RecordCount{0} && view->message.empty()) {
+        view->message = "being printed now, or broken off";
+    }
+    return json_result(api::to_json(*view));
 }
 
 Result<std::vector<Json>> SpoolSource::jobs(const JobQuery& query) {
-    auto jobs = spool_.jobs();
-    if (!jobs) {
-        return jobs.error();
-    }
-    std::reverse(jobs->begin(), jobs->end());
-    std::vector<Json> views;
-    for (const spool::Job& job : *jobs) {
-        auto json = view(job);
-        if (!json) {
-            return json.error();
+    const auto wanted = [&query](const Json& job) {
+        const auto phase = std::find(query.phases.begin(), query.phases.end(), text(job, "phase"));
+        return (query.phases.empty() || phase != query.phases.end()) &&
+               (query.printer.empty() || text(job, "printer") == query.printer);
+    };
+    daemon::JobViews views{spool_};
+    std::vector<Json> found;
+    for (std::optional<spool::JobId> before; found.size() < query.limit;) {
+        const auto jobs = spool_.newest_jobs(before, jobs_at_once);
+        if (!jobs) {
+            return jobs.error();
         }
-        const bool wanted = query.phases.empty() || std::find(query.phases.begin(), query.phases.end(),
-                                                              text(*json, "phase")) != query.phases.end();
-        if (wanted && (query.printer.empty() || text(*json, "printer") == query.printer)) {
-            views.push_back(std::move(*json));
+        for (const spool::Job& job : *jobs) {
+            auto json = view(job, views);
+            if (!json) {
+                return json.error();
+            }
+            if (wanted(*json) && found.size() < query.limit) {
+                found.push_back(std::move(*json));
+            }
+            before = job.id;
         }
-        if (views.size() == query.limit) {
+        if (jobs->size() < jobs_at_once) {
             break;
         }
     }
-    return views;
+    return found;
 }
 
 Result<Json> SpoolSource::job(std::int64_t id) {
@@ -126,7 +98,8 @@ Result<Json> SpoolSource::job(std::int64_t id) {
     if (!job) {
         return job.error();
     }
-    return view(*job);
+    daemon::JobViews views{spool_};
+    return view(*job, views);
 }
 
 Result<std::vector<Json>> SpoolSource::history(std::int64_t id, std::optional<RecordRange> records) {

@@ -111,6 +111,23 @@ void check_folder_paths(const Settings& settings, Context& context) {
     }
 }
 
+/// A folder is emptied of all that fits its pattern: nothing that the service itself needs may lie there.
+void check_own_files(const Settings& settings, Context& context) {
+    const auto check = [&](const std::string& key, const std::filesystem::path& file) {
+        for (const FolderSettings& folder : settings.folders) {
+            const std::string path = "folders." + folder.name + ".path";
+            if (context.was_read(path) && lies_in(file, folder.path)) {
+                context.refuse(context.was_read(key) ? key : path,
+                               in_quotes(file.string()) + " lies in folder " + folder.name + ": keep it apart");
+            }
+        }
+    };
+    check("spool", settings.spool);
+    check("errors", settings.errors_file.value_or(""));
+    check("http.tokens_file", settings.http.tokens_file.value_or(""));
+    check("control.socket", settings.control.socket);
+}
+
 void check_folder(const FolderSettings& folder, const Settings& settings, Context& context) {
     const std::string key = "folders." + folder.name;
     check_reference(key + ".layout", folder.layout, "layout", names(settings.layouts), context);
@@ -172,6 +189,7 @@ void check_settings(const Settings& settings, Context& context) {
         check_folder(folder, settings, context);
     }
     check_folder_paths(settings, context);
+    check_own_files(settings, context);
 }
 
 void check_policies(const Settings& settings, Context& context) {

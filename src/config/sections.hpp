@@ -108,7 +108,8 @@ void visit(V& v, S& s) {
     constexpr std::size_t max_names = 100;
     v.value("listen", s.listen, TextValue{45, false, ip_address_problem}, {Applies::restart});
     v.value("port", s.port, Whole<std::uint16_t>{1, 65535}, {Applies::restart});
-    v.value("tokens_file", s.tokens_file, Maybe{PathValue{}});
+    // With listen: otherwise a reload could take the tokens away from an address that others reach.
+    v.value("tokens_file", s.tokens_file, Maybe{PathValue{}}, {Applies::restart});
     v.value("hosts", s.hosts, ListOf{TextValue{253, false, host_problem}, max_names});
     v.value("origins", s.origins, ListOf{TextValue{300, false, origin_problem}, max_names});
     v.value("max_body", s.max_body, SizeValue{1U << 10U, std::uint64_t{4} << 30U});

@@ -85,11 +85,12 @@ enum class Settle {
 
 struct FolderSettings {
     std::string name;
-    std::filesystem::path path; ///< absolute; no two folders share it
+    std::filesystem::path path; ///< absolute; no two lie in each other, and no file of the service lies in it
     std::string layout;         ///< name of a layout
     std::string printer;        ///< name of a printer
-    /// File names that are taken: `*` stands for any characters, `?` for one. Never `.done`.
-    std::string pattern = "*";
+    /// File names that are taken: `*` stands for any characters, `?` for one, `[abc]` for one of them; a leading dot
+    /// must be written. Never `.done`. Not simply `*`: that takes what a copying program calls NAME.part meanwhile.
+    std::string pattern = "*.csv";
     /// Its jobs may start by themselves, as with the printer's queue.autostart; both must say so.
     bool autostart = false;
     Watch watch = Watch::inotify;

@@ -148,8 +148,8 @@ bool read_text(const Node& node, const std::string& key, const std::string& expe
         refuse_value(node, key, expected, context, "; put it in quotes if this text is meant");
         return false;
     }
-    if (node.text.empty()) {
-        refuse_value(node, key, expected, context);
+    if (node.text.empty() || node.text.find('\0') != std::string::npos) {
+        refuse_value(node, key, expected, context); // a text with a NUL would end there elsewhere
         return false;
     }
     out = node.text;
@@ -257,7 +257,7 @@ bool PathValue::read(const Node& node, const std::string& key, Context& context,
     if (!read_text(node, key, expected, context, false, text)) {
         return false;
     }
-    if (text.find('\0') != std::string::npos || text.find('\n') != std::string::npos) {
+    if (text.find('\n') != std::string::npos) {
         refuse_value(node, key, "a path without line breaks", context);
         return false;
     }

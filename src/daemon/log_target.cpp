@@ -105,6 +105,7 @@ public:
             fields.push_back("CODE_FUNC=" + std::string{line.function});
         }
         std::vector<iovec> pieces;
+        pieces.reserve(fields.size());
         for (std::string& field : fields) {
             pieces.push_back({field.data(), field.size()});
         }

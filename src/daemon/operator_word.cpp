@@ -1,6 +1,7 @@
 #include "daemon/operator_word.hpp"
 
 #include "base/assert.hpp"
+#include "daemon/job_records.hpp"
 #include "daemon/record_ranges.hpp"
 #include "daemon/record_text.hpp"
 
@@ -24,41 +25,35 @@ std::string evidence(const std::string& who, const std::string& said) {
 }
 
 /// The records that may be on the last product: those in doubt, and the one before the first.
-std::vector<RecordNumber> candidates(const spool::Job& job, const std::vector<RecordRange>& doubt) {
-    std::vector<RecordNumber> numbers;
+std::vector<RecordRange> candidates(const spool::Job& job, const std::vector<RecordRange>& doubt) {
+    std::vector<RecordRange> ranges = doubt;
     const RecordNumber first = doubt.front().first();
     if (first > job.records.first()) {
-        numbers.push_back(first.previous());
+        ranges.front() = RecordRange::closed(first.previous(), doubt.front().last());
     }
-    for (const RecordRange& range : doubt) {
-        for (std::uint64_t i = 0; i < range.count().value(); ++i) {
-            numbers.push_back(range.first() + RecordCount{i});
-        }
-    }
-    return numbers;
+    return ranges;
 }
 
 /// The record on the last product, by number or text. 0 = none of the job has been printed.
 Result<RecordNumber> last_printed(spool::Spool& spool, const spool::Job& job, const std::vector<RecordRange>& doubt,
                                   const std::string& said) {
-    const RecordFormat format = record_format(job);
-    const std::vector<RecordNumber> possible = candidates(job, doubt);
+    const std::vector<RecordRange> possible = candidates(job, doubt);
     std::vector<RecordNumber> by_number;
     std::vector<RecordNumber> by_text;
     std::uint32_t number = 0;
     const auto [stop, error] = std::from_chars(said.data(), said.data() + said.size(), number);
     const bool is_number = error == std::errc{} && stop == said.data() + said.size();
-    for (const RecordNumber candidate : possible) {
-        if (is_number && candidate == RecordNumber{number}) {
-            by_number.push_back(candidate);
+    const auto read = for_each_record(spool, job, possible, [&](const DoubtView::Record& candidate) {
+        if (is_number && candidate.number == RecordNumber{number}) {
+            by_number.push_back(candidate.number);
         }
-        const auto page = spool.read_page(job.id, candidate);
-        if (!page) {
-            return page.error();
+        if (joined(candidate.fields, " ") == said) {
+            by_text.push_back(candidate.number);
         }
-        if (joined(record_fields(*page, candidate, format), " ") == said) {
-            by_text.push_back(candidate);
-        }
+        return true;
+    });
+    if (!read) {
+        return read.error();
     }
     if (is_number && number == doubt.front().first().previous().value()) {
         by_number = {doubt.front().first().previous()};
@@ -76,7 +71,7 @@ Result<RecordNumber> last_printed(spool::Spool& spool, const spool::Job& job, co
         return found.front();
     }
     const std::string range =
-        std::to_string(possible.front().value()) + " to " + std::to_string(doubt.back().last().value());
+        std::to_string(possible.front().first().value()) + " to " + std::to_string(doubt.back().last().value());
     return Failure{FailureKind::usage,
                    found.empty() ? "--last-printed " + said + ": no record from " + range + " has this number or text"
                                  : "--last-printed " + said + ": several records from " + range +

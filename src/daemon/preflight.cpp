@@ -159,7 +159,7 @@ Finding job_file(const std::optional<protocol::JobName>& job, const PreflightRul
         return problem(check, loaded + ", and it has to be " + *wanted, "Load " + *wanted + " at the printer.");
     }
     if (job->path.empty()) {
-        return problem(check, loaded, "Load the job whose text object takes mail records (EXTTXT, field 1 or higher).");
+        return warning(check, loaded, "Load the job whose text object takes mail records (EXTTXT, field 1 or higher).");
     }
     return ok(check, loaded);
 }

@@ -146,14 +146,17 @@ void Feeder::locate_step(Instant now, Actions& out) {
         mail_reads_ = 0; // an answer to an inquiry from before the stop
         return;
     }
-    const bool print_in_progress = !mail_.last_print_finished && status_.machine != MachineState::printing;
-    if (mail_reads_ >= 2 && status_.machine != MachineState::printing) {
-        note_unfinished();
-    }
-    const bool not_flushed = phase_ == Phase::clearing && mail_.entries > 0;
     if (mail_reads_ < 2) {
         ask(Parameter::SM, now, out);
-    } else if ((print_in_progress || not_flushed) && deadline_ && now < *deadline_) {
+        return;
+    }
+    const bool stands = status_.machine != MachineState::printing;
+    if (stands) {
+        note_unfinished();
+    }
+    const bool print_in_progress = stands && !mail_.last_print_finished;
+    const bool not_flushed = phase_ == Phase::clearing && mail_.entries > 0;
+    if ((print_in_progress || not_flushed) && deadline_ && now < *deadline_) {
         ask_later(Parameter::SM, now);
     } else if (not_flushed) {
         end(OutcomeCode::fifo_not_flushed, out); // what lies there may still be printed: its fate stays open

@@ -266,9 +266,12 @@ private:
         int under_way = 0;           ///< with this one
         RecordNumber sent_through{}; ///< before it
     };
-    std::array<MailAsked, 64> mail_asked_{}; ///< ring of the inquiries under way
-    RecordNumber sent_before_inquiry_;       ///< the one that was answered last
-    RecordNumber surely_received_;           ///< sent before the inquiry before: an answer may be so old
+    static constexpr int max_mail_asked = 64;
+    /// With more under way no proof is asked for, which takes two: half is left for the beat.
+    static constexpr int max_mail_before_proof = max_mail_asked / 2 - 1;
+    std::array<MailAsked, max_mail_asked> mail_asked_{}; ///< ring of the inquiries under way
+    RecordNumber sent_before_inquiry_;                   ///< the one that was answered last
+    RecordNumber surely_received_;                       ///< sent before the inquiry before: an answer may be so old
     std::size_t mail_oldest_ = 0;
     int mail_outstanding_ = 0;
     int counters_outstanding_ = 0;

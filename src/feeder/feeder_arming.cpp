@@ -219,7 +219,8 @@ void Feeder::verify(Instant now, Actions& out) {
         ask_later(Parameter::SM, now);
         return;
     }
-    if (mail_.entries + std::uint64_t{2} < sent) { // one less may be a way to count
+    const std::uint64_t way_to_count = total_before_ ? 1 : 0; // one less may be one: the counter will tell
+    if (mail_.entries + std::uint64_t{1} + way_to_count < sent) {
         begin_stop(OutcomeCode::stopped_at_printer, now, out);
         return;
     }

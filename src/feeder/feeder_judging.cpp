@@ -107,6 +107,8 @@ void Feeder::judge_finally(Instant now, Actions& out) {
     if (number_forgotten) {
         seen.mail = first_look_.mail;
     }
+    // Started between the looks, with an empty FIFO but for what had arrived since the stop.
+    seen.restarted = seen.restarted || seen.mail.last_printed != first_look_.mail.last_printed;
     settle(reconcile(open_run(), seen), seen, now, out);
 }
 

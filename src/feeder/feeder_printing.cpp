@@ -172,7 +172,7 @@ void Feeder::doubt_number() {
 
 void Feeder::ask_for_proof(Instant now, Actions& out) {
     const bool wanted = reported_through_ > confirmed_through_ && counter_proof_.wants_count(now);
-    if (wanted && counters_outstanding_ == 0 && mail_outstanding_ < Pacing::max_inquiries) {
+    if (wanted && counters_outstanding_ == 0 && mail_outstanding_ <= max_mail_before_proof) {
         ask(Parameter::CC, now, out);
         ask(Parameter::SM, now, out);
         ask(Parameter::SM, now, out);
@@ -239,7 +239,7 @@ bool Feeder::stop_point_vanished(Instant now, Actions& out) {
 /// The stop point has vanished, and the printer says that it prints: it has been started again, or takes its time to
 /// stop.
 void Feeder::stop_suspected(Instant now, Actions& out) {
-    if (stop_point_ == StopPoint::kept_idle) {
+    if (stop_point_ == StopPoint::kept_idle && total_before_) { // otherwise nothing else would show that it was a stop
         stop_point_ = StopPoint::unset; // this firmware keeps it only when it is set after the start
         stop_move_ = StopMove::none;
         old_stop_point_.reset();

@@ -142,14 +142,14 @@ Verdict by_number(const OpenRun& run, const Evidence& evidence) {
         return all_in_doubt(run);
     }
     const bool unanswered = run.total_before && !evidence.printer.total_prints;
-    if (unanswered && (!evidence.uninterrupted || evidence.restart_unseen)) {
+    if (unanswered && evidence.restart_unseen) {
         return all_in_doubt(run); // it could tell whether records were skipped
     }
     switch (counter) {
     case CounterSays::agrees:
         return printed_as_reported(run, evidence, Basis::mail_status_and_counter);
-    case CounterSays::nothing:
-        return printed_as_reported(run, evidence, Basis::mail_status);
+    case CounterSays::nothing: // While we were away it may have left records out, or printed others with such numbers.
+        return evidence.uninterrupted ? printed_as_reported(run, evidence, Basis::mail_status) : all_in_doubt(run);
     case CounterSays::one_less:
         return evidence.uninterrupted && !evidence.restart_unseen
                    ? printed_as_reported(run, evidence, Basis::mail_status_and_counter)

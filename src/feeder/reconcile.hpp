@@ -41,7 +41,7 @@ struct OpenRun {
 enum class Basis {
     mail_status_and_counter, ///< fresh `=SM`, and the total print counter agrees
     end_message,             ///< message 1223: the printer stopped itself behind the stop-at record
-    mail_status,             ///< fresh `=SM` alone: the printer does not report its counter, or it does not move
+    mail_status,             ///< fresh `=SM` alone, under our eyes: no counter is reported, or it does not move
     counter,                 ///< the total print counter alone, an upper bound: the printer has lost its memory
     nothing_issued,          ///< no record had been issued
     none,                    ///< no evidence: the records are in doubt

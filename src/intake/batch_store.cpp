@@ -1,5 +1,8 @@
 #include "intake/batch_store.hpp"
 
+#include <algorithm>
+#include <filesystem>
+
 namespace linefeed::intake {
 
 Result<FoundBatch> find_batch(spool::Spool& spool, const spool::JobSpec& spec) {
@@ -19,8 +22,10 @@ Result<FoundBatch> find_batch(spool::Spool& spool, const spool::JobSpec& spec) {
         return *earlier ? FoundBatch{KnownBatch{std::move(**earlier), false}, job.id}
                         : FoundBatch{KnownBatch{job, true}, {}};
     }
+    const std::filesystem::path folder = std::filesystem::path{spec.source.path}.parent_path();
     for (const spool::Job& job : *jobs) {
-        if (job.spec.layout == spec.layout && job.spec.base == spec.base) {
+        if ((job.spec.layout == spec.layout && job.spec.base == spec.base) ||
+            std::filesystem::path{job.spec.source.path}.parent_path() == folder) {
             return FoundBatch{KnownBatch{job, false}, {}};
         }
     }
@@ -32,7 +37,9 @@ Result<std::optional<spool::Job>> earlier_job(spool::Spool& spool, const spool::
     if (!same) {
         return same.error();
     }
-    if (same->empty() || same->front().id >= job.id) {
+    // Whichever was begun first: imports may overlap, and this one has become ready last.
+    const auto other = std::ranges::find_if(*same, [&](const spool::Job& one) { return one.id != job.id; });
+    if (other == same->end()) {
         return std::optional<spool::Job>{};
     }
     const auto state = spool.ledger_state(job.id);
@@ -42,7 +49,7 @@ Result<std::optional<spool::Job>> earlier_job(spool::Spool& spool, const spool::
     if (!state->segments().empty()) {
         return std::optional<spool::Job>{}; // somebody wants it printed again
     }
-    return std::optional{std::move(same->front())};
+    return std::optional{std::move(*other)};
 }
 
 Result<std::optional<KnownBatch>> SpoolBatches::find(const spool::JobSpec& spec) {

@@ -57,6 +57,9 @@ Result<bool> DropFolder::handle(Claimed& batch, Instant now) {
     }
     bool changed = false;
     auto report = read(batch, **look, changed);
+    if (report && report->verdict == DropVerdict::failed && is_changed(batch, **look)) {
+        changed = true; // what is wrong with half a file says nothing about the whole
+    }
     if (changed) {
         if (!batch.told) {
             batch.told = true;
@@ -66,7 +69,6 @@ Result<bool> DropFolder::handle(Claimed& batch, Instant now) {
         return false;
     }
     if (!report) {
-        batch.left_over = true; // what was imported before the failure may be its own
         return report.error();
     }
     events_.reached(DropStep::imported);
@@ -74,8 +76,13 @@ Result<bool> DropFolder::handle(Claimed& batch, Instant now) {
     return finished ? Result<bool>{true} : finished.error();
 }
 
+bool DropFolder::is_changed(const Claimed& batch, const FileLook& before) const {
+    const auto now = directory_.look_claimed(batch.kept);
+    return !now || *now != before;
+}
+
 /// From the file to its report. `changed` is set if nothing is to be made of what was read.
-Result<DropReport> DropFolder::read(const Claimed& batch, const FileLook& look, bool& changed) {
+Result<DropReport> DropFolder::read(Claimed& batch, const FileLook& look, bool& changed) {
     DropReport report;
     report.name = batch.name;
     report.size_bytes = look.size_bytes;
@@ -92,14 +99,16 @@ Result<DropReport> DropFolder::read(const Claimed& batch, const FileLook& look, 
     }
     auto file = directory_.open_claimed(batch.kept);
     if (!file) {
-        return failed(without_path(file.error().message, directory_.path() / "processing" / batch.kept));
+        return is_about_the_file(file.error())
+                   ? Result<DropReport>{failed(
+                         without_path(file.error().message, directory_.path() / "processing" / batch.kept))}
+                   : file.error();
     }
     auto sum = hash(batch, *file);
     if (!sum) {
         return is_about_the_file(sum.error()) ? Result<DropReport>{failed(sum.error().message)} : sum.error();
     }
-    const auto after = directory_.look_claimed(batch.kept);
-    changed = !after || *after != look;
+    changed = is_changed(batch, look);
     if (changed) {
         return report;
     }
@@ -120,12 +129,20 @@ Result<DropReport> DropFolder::read(const Claimed& batch, const FileLook& look, 
     }
     if (*known) {
         const spool::Job& job = (*known)->job;
-        const bool own = batch.left_over && (*known)->this_file;
+        const bool own = batch.begun && (*known)->this_file;
+        const bool same_way = job.spec.layout == spec.layout && job.spec.base == spec.base;
         report.verdict = own ? DropVerdict::imported : DropVerdict::duplicate;
-        report.reason = own ? "" : "its content was imported before, from " + job.spec.source.path;
+        report.reason = own ? ""
+                            : "its content was imported before, from " + job.spec.source.path +
+                                  (same_way ? "" : ", and read with other options then");
         name_job(report, job);
         return report;
     }
+    // Otherwise a power failure could undo the claim, but not the job, and the file would seem to be a second one.
+    if (auto synced = directory_.sync_claims(); !synced) {
+        return synced.error();
+    }
+    batch.begun = true;
     if (auto imported = import(batch, std::move(*file), look, spec, report, changed); !imported) {
         return imported.error();
     }
@@ -173,8 +190,7 @@ Result<void> DropFolder::import(const Claimed& batch, FileInput file, const File
         return failed(opened.error());
     }
     opened->options.check_source = [&]() -> Result<void> {
-        const auto now = directory_.look_claimed(batch.kept);
-        changed = !now || *now != look;
+        changed = is_changed(batch, look);
         return changed ? Failure{FailureKind::input, "it was changed while it was read"} : Result<void>{};
     };
     opened->options.on_progress = [&](const ImportReport& so_far, double fraction) {
@@ -206,7 +222,7 @@ Result<void> DropFolder::finish(const Claimed& batch, DropReport& report) {
     }
     report.kept_as = std::string{to_string(end)} + '/' + *name;
     if (auto written = directory_.write_report(end, *name, to_json(report) + '\n'); !written) {
-        events_.note(batch.name, "its report cannot be written: " + written.error().message);
+        return written.error();
     }
     events_.reached(DropStep::reported);
     events_.finished(report);

@@ -31,6 +31,15 @@ std::string words(int error) {
     return std::generic_category().message(error);
 }
 
+/// Returns 0 if there is nothing of this name, EEXIST or another error.
+int check_absent(int directory, const std::string& name) {
+    struct stat status {};
+    if (::fstatat(directory, name.c_str(), &status, AT_SYMLINK_NOFOLLOW) == 0) {
+        return EEXIST;
+    }
+    return errno == ENOENT ? 0 : errno;
+}
+
 /// Renames over nothing. Returns 0 or errno.
 int rename_over_nothing(int from_directory, const std::string& from, int to_directory, const std::string& to) {
     if (::renameat2(from_directory, from.c_str(), to_directory, to.c_str(), RENAME_NOREPLACE) == 0) {
@@ -40,12 +49,8 @@ int rename_over_nothing(int from_directory, const std::string& from, int to_dire
         return errno;
     }
     // Some network file systems cannot. Nobody but the holder of the lock writes where this goes to.
-    struct stat status {};
-    if (::fstatat(to_directory, to.c_str(), &status, AT_SYMLINK_NOFOLLOW) == 0) {
-        return EEXIST;
-    }
-    if (errno != ENOENT) {
-        return errno;
+    if (const int error = check_absent(to_directory, to); error != 0) {
+        return error;
     }
     return ::renameat(from_directory, from.c_str(), to_directory, to.c_str()) == 0 ? 0 : errno;
 }
@@ -72,18 +77,15 @@ Result<std::optional<FileLook>> look_in(int directory, const std::string& name) 
     return std::optional{look};
 }
 
-/// Whether neither a file nor a report would be in the way. Returns 0, EEXIST or another error.
+/// Whether neither a file nor a report would be in the way, and the name is not that of another file's report. Returns
+/// 0, EEXIST or another error.
 int check_free(int directory, const std::string& name) {
-    for (const std::string& taken : {name, name + std::string{report_ending}}) {
-        struct stat status {};
-        if (::fstatat(directory, taken.c_str(), &status, AT_SYMLINK_NOFOLLOW) == 0) {
-            return EEXIST;
-        }
-        if (errno != ENOENT) {
-            return errno;
-        }
+    int error = check_absent(directory, name);
+    error = error == 0 ? check_absent(directory, name + std::string{report_ending}) : error;
+    if (error == 0 && name.size() > report_ending.size() && name.ends_with(report_ending)) {
+        error = check_absent(directory, name.substr(0, name.size() - report_ending.size()));
     }
-    return 0;
+    return error;
 }
 
 /// The names in a directory but "." and "..", in order.
@@ -205,10 +207,31 @@ Result<void> DropDirectory::lock() {
     return {};
 }
 
+/// Otherwise nobody would notice that what is dropped now comes to lie somewhere else, or that nothing can be claimed.
+Result<void> DropDirectory::check_in_place() const {
+    const std::array<std::pair<std::filesystem::path, const Descriptor*>, 4> places{
+        {{path_, &folder_},
+         {path_ / processing_name, &processing_},
+         {path_ / "done", &done_},
+         {path_ / "failed", &failed_}}};
+    for (const auto& [path, place] : places) {
+        struct stat there {};
+        struct stat open {};
+        if (::lstat(path.c_str(), &there) != 0) {
+            return Failure{FailureKind::storage,
+                           path.string() + ": the folder " +
+                               (errno == ENOENT ? "was removed" : "is not reached any more: " + words(errno))};
+        }
+        if (::fstat(place->get(), &open) != 0 || there.st_dev != open.st_dev || there.st_ino != open.st_ino) {
+            return Failure{FailureKind::storage, path.string() + ": the folder was replaced by another one"};
+        }
+    }
+    return {};
+}
+
 Result<std::vector<std::string>> DropDirectory::names() const {
-    struct stat status {};
-    if (::fstat(folder_.get(), &status) != 0 || status.st_nlink == 0) {
-        return Failure{FailureKind::storage, path_.string() + ": the folder was removed"};
+    if (auto in_place = check_in_place(); !in_place) {
+        return in_place.error();
     }
     auto names = list(folder_.get());
     if (!names) {
@@ -246,11 +269,19 @@ Result<std::optional<std::string>> DropDirectory::claim(const std::string& name)
     return Failure{FailureKind::storage, "it cannot be moved to processing/: too many files have had this name"};
 }
 
-void DropDirectory::remove_mark(const std::string& name) {
+void DropDirectory::remove_mark(const std::string& name, const FileLook& seen) {
     const auto look = look_in(folder_.get(), name);
-    if (look && *look && (*look)->kind == FileKind::regular) {
+    if (look && *look == seen && seen.kind == FileKind::regular) {
         ::unlinkat(folder_.get(), name.c_str(), 0); // one that stays is older than the next file of this name
     }
+}
+
+Result<void> DropDirectory::sync_claims() {
+    // EINVAL: a network file system, where the server sees to it.
+    if (::fsync(processing_.get()) != 0 && errno != EINVAL) {
+        return failure(FailureKind::storage, processing_name, errno);
+    }
+    return {};
 }
 
 Result<std::vector<std::string>> DropDirectory::claimed() const {

@@ -55,16 +55,19 @@ public:
     [[nodiscard]] int descriptor() const { return folder_.get(); }
 
     // What is dropped
-    /// All names in the folder, the three folders left out, in order. FailureKind::storage if the folder itself is
-    /// gone.
+    /// All names in the folder, the three folders left out, in order. FailureKind::storage if it or one of the three is
+    /// not where it was: removed, renamed, or another file system mounted over it.
     [[nodiscard]] Result<std::vector<std::string>> names() const;
     /// What is behind a name; absent = nothing any more.
     [[nodiscard]] Result<std::optional<FileLook>> look(const std::string& name) const;
     /// Renames it into processing/, over nothing; returns the name there, which is free in all three folders. Absent =
     /// it had vanished.
     [[nodiscard]] Result<std::optional<std::string>> claim(const std::string& name);
-    /// Removes a done mark, if it is a regular file.
-    void remove_mark(const std::string& name);
+    /// Removes a done mark, if it is a regular file and still as it was `seen`: the next file of this name may have its
+    /// own already.
+    void remove_mark(const std::string& name, const FileLook& seen);
+    /// A power failure does not undo what was claimed until now.
+    [[nodiscard]] Result<void> sync_claims();
 
     // What is claimed
     /// All names in processing/, in order; files that SQLite keeps beside a database are no batches.
@@ -83,6 +86,7 @@ private:
     DropDirectory() = default;
     [[nodiscard]] Result<void> open_inner();
     [[nodiscard]] Result<void> lock();
+    [[nodiscard]] Result<void> check_in_place() const;
     [[nodiscard]] const Descriptor& directory_of(DropEnd end) const { return end == DropEnd::done ? done_ : failed_; }
     [[nodiscard]] Failure failure(FailureKind kind, const std::string& name, int error) const;
 

@@ -56,8 +56,10 @@ void DropFolder::take_up_claimed(const std::vector<std::string>& names) {
     for (const std::string& name : names) {
         claimed_.push_back({name, name, {}, true});
         // Its done mark may have been left behind; one of a new file of this name has to stay.
-        if (const auto again = directory_.look(name); again && !*again) {
-            directory_.remove_mark(name + std::string{done_mark_ending});
+        const auto again = directory_.look(name);
+        const auto mark = directory_.look(name + std::string{done_mark_ending});
+        if (again && !*again && mark && *mark) {
+            directory_.remove_mark(name + std::string{done_mark_ending}, **mark);
         }
     }
 }
@@ -72,12 +74,13 @@ Result<DropFolder::Next> DropFolder::step(Instant now) {
     if (auto taken = take_events(now); !taken) {
         return taken.error();
     }
-    for (int looks = 0; looks < looks_per_step && claimed_.empty() && !due_.empty() && due_.begin()->first <= now;
+    const auto can_be_read = [now](const Claimed& claimed) { return claimed.not_before <= now; };
+    for (int looks = 0; looks < looks_per_step && std::ranges::none_of(claimed_, can_be_read) && !due_.empty() &&
+                        due_.begin()->first <= now;
          ++looks) {
         consider(candidates_.find(due_.begin()->second), now);
     }
-    const auto batch =
-        std::ranges::find_if(claimed_, [now](const Claimed& claimed) { return claimed.not_before <= now; });
+    const auto batch = std::ranges::find_if(claimed_, can_be_read);
     if (batch == claimed_.end()) {
         return next(now);
     }
@@ -92,6 +95,9 @@ Result<DropFolder::Next> DropFolder::step(Instant now) {
 }
 
 DropFolder::Next DropFolder::next(Instant now) const {
+    if (!scan_at_) {
+        return {true, now, false}; // events were lost
+    }
     Next next{false, *scan_at_, claimed_.empty() && due_.empty()};
     if (!due_.empty()) {
         next.at = std::min(next.at, due_.begin()->first);
@@ -236,7 +242,9 @@ void DropFolder::consider(Candidates::iterator candidate, Instant now) {
         return; // it has vanished
     }
     events_.reached(DropStep::claimed);
-    directory_.remove_mark(ready + std::string{done_mark_ending});
+    if (mark && *mark) {
+        directory_.remove_mark(ready + std::string{done_mark_ending}, **mark);
+    }
     const auto claimed_look = directory_.look_claimed(**kept);
     const bool same = claimed_look && *claimed_look && same_content(**claimed_look, **look);
     // Another file, or more of it, than that which has settled: it has to settle where it is now.

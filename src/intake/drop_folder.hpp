@@ -5,7 +5,8 @@
 // A crash at any moment neither loses nor doubles a batch, because a file is always in exactly one of these places and
 // moves on only when what comes before is durable: the job is committed, with the file's hash, before the file leaves
 // processing/. What lies in processing/ at the start is taken up again, and the spool knows by hash and file whether it
-// was imported. Nothing has to be synced to the disk here: a rename that a power failure undoes is done again.
+// was imported. The claim is synced to the disk before the job is made; every other rename that a power failure undoes
+// is done again.
 //
 // Not handled: a writer that was silent for the whole quiet time and writes on after the file was claimed is only found
 // out while the file is being read (then it is read again later); what it writes after that is in done/, not in the
@@ -80,7 +81,8 @@ public:
     };
     /// Takes what has happened, and handles at most one file. A failure leaves the file in processing/, where the next
     /// step, or the next start, takes it up again: FailureKind::storage if the store or the folder cannot be written,
-    /// FailureKind::stopped if events.progress() has broken it off.
+    /// or the folder is not where it was any more (then only open() helps); FailureKind::internal if the file cannot be
+    /// opened for now, FailureKind::stopped if events.progress() has broken it off.
     [[nodiscard]] Result<Next> step(Instant now);
 
     /// Readable when something has happened; -1 = only time tells. A file that is being written makes it readable all
@@ -123,15 +125,16 @@ private:
 
     // drop_batch.cpp: one claimed file
     struct Claimed {
-        std::string kept;       ///< in processing/
-        std::string name;       ///< it was dropped under
-        Instant not_before{};   ///< it changed under our eyes
-        bool left_over = false; ///< from before the start
-        bool told = false;      ///< that it changes
+        std::string kept;     ///< in processing/
+        std::string name;     ///< it was dropped under
+        Instant not_before{}; ///< it changed under our eyes
+        bool begun = false;   ///< its import, now or before the start: its job may be there already
+        bool told = false;    ///< that it changes
     };
     /// True if it is over, false if it is to be read again later.
     [[nodiscard]] Result<bool> handle(Claimed& batch, Instant now);
-    [[nodiscard]] Result<DropReport> read(const Claimed& batch, const FileLook& look, bool& changed);
+    [[nodiscard]] Result<DropReport> read(Claimed& batch, const FileLook& look, bool& changed);
+    [[nodiscard]] bool is_changed(const Claimed& batch, const FileLook& before) const;
     [[nodiscard]] Result<std::string> hash(const Claimed& batch, FileInput& file);
     [[nodiscard]] Result<void> import(const Claimed& batch, FileInput file, const FileLook& look,
                                       const spool::JobSpec& spec, DropReport& report, bool& changed);

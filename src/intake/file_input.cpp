@@ -17,6 +17,23 @@ Failure refused(const std::filesystem::path& file, const std::string& why) {
     return {FailureKind::input, file.string() + ": " + why};
 }
 
+/// What the error says is about this machine or the way to the file, not about the file: later it may be readable.
+FailureKind kind_of(int error) {
+    switch (error) {
+    case EMFILE:
+    case ENFILE:
+    case ENOMEM:
+    case ESTALE:
+    case ETIMEDOUT:
+    case ENOTCONN:
+    case EHOSTDOWN:
+    case EHOSTUNREACH:
+        return FailureKind::internal;
+    default:
+        return FailureKind::input;
+    }
+}
+
 std::string words(int error) {
     switch (error) {
     case ENOENT:
@@ -30,6 +47,10 @@ std::string words(int error) {
     default:
         return std::generic_category().message(error);
     }
+}
+
+Failure unreadable(int error, std::string place = {}) {
+    return {kind_of(error), std::move(place) + words(error)};
 }
 
 } // namespace
@@ -47,11 +68,11 @@ Result<FileInput> FileInput::open_in(int directory, const std::string& name, con
 Result<FileInput> FileInput::checked(FileInput input) {
     const std::filesystem::path& file = input.file_;
     if (input.descriptor_ < 0) {
-        return refused(file, words(errno));
+        return unreadable(errno, file.string() + ": ");
     }
     struct stat status {};
     if (::fstat(input.descriptor_, &status) != 0) {
-        return refused(file, words(errno));
+        return unreadable(errno, file.string() + ": ");
     }
     if (S_ISDIR(status.st_mode)) {
         return refused(file, "this is a directory, not a file");
@@ -79,19 +100,19 @@ Result<std::size_t> FileInput::read(std::span<char> out) {
             return static_cast<std::size_t>(got);
         }
         if (errno != EINTR) {
-            return Failure{FailureKind::input, words(errno)};
+            return unreadable(errno);
         }
     }
 }
 
 Result<void> FileInput::rewind() {
-    return ::lseek(descriptor_, 0, SEEK_SET) == 0 ? Result<void>{} : Failure{FailureKind::input, words(errno)};
+    return ::lseek(descriptor_, 0, SEEK_SET) == 0 ? Result<void>{} : unreadable(errno);
 }
 
 Result<struct stat> FileInput::status() const {
     struct stat status {};
     if (::fstat(descriptor_, &status) != 0) {
-        return Failure{FailureKind::input, words(errno)};
+        return unreadable(errno);
     }
     return status;
 }

@@ -20,7 +20,8 @@ namespace linefeed::intake {
 /// An open regular file; reads from front to back.
 class FileInput {
 public:
-    /// Fails with FailureKind::input: missing, a directory, a pipe or device, no permission, empty.
+    /// Fails with FailureKind::input: missing, a directory, a pipe or device, no permission, empty; with
+    /// FailureKind::internal, as the functions below, if it is this machine or the network that is in trouble.
     [[nodiscard]] static Result<FileInput> open(const std::filesystem::path& file);
     FileInput(FileInput&& other) noexcept
         : file_(std::move(other.file_))

@@ -65,6 +65,9 @@ SettleDecision SettlingFile::decide(const SettleRule& rule, const FileLook& look
     if (open_for_writing_) {
         return {Kind::hold, {}, "it is open for writing"};
     }
+    if (never_closed_ && look.size_bytes == 0) {
+        return {Kind::hold, {}, "it is empty, and whoever made it has not closed it yet"};
+    }
     if (mark && mark->kind == FileKind::regular && mark->changed_ns >= look.changed_ns) {
         return {Kind::ready};
     }

@@ -64,19 +64,20 @@ struct SettleDecision {
 class SettlingFile {
 public:
     // What the watch has seen, if it sees such things
-    void created() { *this = SettlingFile{}, in_place_ = true; }
+    void created() { *this = SettlingFile{}, in_place_ = true, never_closed_ = true; }
     void moved_in() { *this = SettlingFile{}; }
     void modified() { open_for_writing_ = true; }
-    void closed() { open_for_writing_ = false; }
+    void closed() { open_for_writing_ = false, never_closed_ = false; }
     /// Events are missing: nothing is known of its writers, and how long it has been quiet counts anew.
-    void events_lost() { open_for_writing_ = false, look_.reset(); }
+    void events_lost() { open_for_writing_ = false, never_closed_ = false, look_.reset(); }
 
     /// `mark` is the look at its done mark, if there is one.
     [[nodiscard]] SettleDecision decide(const SettleRule& rule, const FileLook& look,
                                         const std::optional<FileLook>& mark, Instant now);
 
 private:
-    bool in_place_ = false; ///< seen to be made here
+    bool in_place_ = false;     ///< seen to be made here …
+    bool never_closed_ = false; ///< … and not closed since
     bool open_for_writing_ = false;
     std::optional<FileLook> look_; ///< the last one …
     Instant since_{};              ///< … and since when it is like this

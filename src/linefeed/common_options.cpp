@@ -47,7 +47,8 @@ void add_service(CLI::App& command, client::ServiceOptions& options) {
         .add_option("--socket", options.socket,
                     "Socket of the service; default: LINEFEED_SOCKET, or " + std::string{client::default_socket})
         ->group(group);
-    command.add_option("--url", options.url, "Ask the service over TCP instead: http://HOST:PORT")->group(group);
+    command.add_option("--url", options.url, "Ask the service over TCP instead: http://HOST:PORT (8631 without PORT)")
+        ->group(group);
     command.add_option("--token-file", options.token_file, "File with the token for --url")->group(group);
 }
 

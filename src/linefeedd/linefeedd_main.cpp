@@ -1,9 +1,9 @@
 // linefeedd, the service: reads its settings, runs until SIGTERM, and leaves no line printing. CLI11 stays in this file.
+#include "api/server.hpp"
 #include "cli/check_config_command.hpp"
 #include "config/load.hpp"
 #include "daemon/log.hpp"
 #include "daemon/service_manager.hpp"
-#include "protocol/printable.hpp"
 #include "service/event_logging.hpp"
 #include "service/service.hpp"
 
@@ -12,7 +12,6 @@
 #include <chrono>
 #include <csignal>
 #include <cstdio>
-#include <iostream>
 #include <pthread.h>
 #include <unistd.h>
 
@@ -52,10 +51,26 @@ linefeed::config::Checked<linefeed::config::Settings> load(const std::filesystem
     return linefeed::config::load(file, linefeed::config::read_environment(::environ));
 }
 
+using linefeed::config::LogComponent;
+using linefeed::config::LogLevel;
 using linefeed::daemon::Watchdog;
 
+/// The settings again: those of the service, and where they were taken, of what stands around it.
+void reload(linefeed::service::Service& service, linefeed::api::Server& server, linefeed::daemon::Log& log) {
+    linefeed::daemon::notify_reloading();
+    if (service.reload({"linefeedd (SIGHUP)"})) { // an event tells what came of it
+        const auto settings = service.settings();
+        log.set_levels(settings->logging);
+        if (const auto taken = server.reload(settings->http); !taken) {
+            log.write(LogComponent::api, LogLevel::error, "the API goes on as it was: " + taken.error().message);
+        }
+    }
+    linefeed::daemon::notify_ready("running");
+}
+
 /// Until SIGTERM; SIGHUP reads the settings again.
-void watch(linefeed::service::Service& service, linefeed::daemon::Log& log, const Signals& signals) {
+void watch(linefeed::service::Service& service, linefeed::api::Server& server, linefeed::daemon::Log& log,
+           const Signals& signals) {
     constexpr auto tick_interval = std::chrono::seconds{10};
     using Clock = std::chrono::steady_clock;
     Watchdog watchdog{service.hearts()};
@@ -67,10 +82,7 @@ void watch(linefeed::service::Service& service, linefeed::daemon::Log& log, cons
         case SIGINT:
             return;
         case SIGHUP:
-            linefeed::daemon::notify_reloading();
-            static_cast<void>(service.reload({"linefeedd (SIGHUP)"})); // an event tells what came of it
-            log.set_levels(service.settings()->logging);
-            linefeed::daemon::notify_ready("running");
+            reload(service, server, log);
             break;
         default:
             break;
@@ -91,16 +103,20 @@ ExitCode serve(const Options& options, const linefeed::config::Settings& setting
         {settings, [&options] { return load(options.config); },
          [&log](const linefeed::spool::Event& event) { linefeed::service::log_event(log, event); }, LINEFEED_VERSION});
     if (!opened) {
-        log.write(linefeed::config::LogComponent::service, linefeed::config::LogLevel::error, opened.error().message);
-        std::cerr << "linefeedd: " << linefeed::protocol::printable(opened.error().message) << '\n';
+        log.write(LogComponent::service, LogLevel::error, opened.error().message);
         return ExitCode::other;
     }
     linefeed::service::Service& service = **opened;
-    // The place of the API: constructed with (service, settings) and started here, it serves until watch() returns.
+    linefeed::api::Server server{service, settings};
+    if (const auto started = server.start(); !started) {
+        log.write(LogComponent::api, LogLevel::error, started.error().message);
+        return ExitCode::other;
+    }
     linefeed::daemon::notify_ready("running");
-    watch(service, log, signals);
+    watch(service, server, log, signals);
     linefeed::daemon::notify_stopping("stopping the lines");
-    service.shut_down();
+    service.shut_down(); // still answering what it is asked meanwhile
+    server.stop();
     return ExitCode::done;
 }
 

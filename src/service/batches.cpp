@@ -96,7 +96,15 @@ Result<std::optional<intake::KnownBatch>> Batches::find(const spool::JobSpec& sp
     if (again_) {
         return std::optional<intake::KnownBatch>{};
     }
-    auto found = spool_.write([&](spool::Spool& spool) { return intake::find_batch(spool, spec); });
+    auto found = spool_.write([&](spool::Spool& spool) -> Result<intake::FoundBatch> {
+        auto batch = intake::find_batch(spool, spec);
+        if (batch && batch->gives_way) {
+            if (auto begun = spool.remove_job_step(*batch->gives_way); !begun) {
+                return begun.error();
+            }
+        }
+        return batch;
+    });
     if (!found) {
         return found.error();
     }
@@ -110,50 +118,44 @@ Result<std::optional<intake::KnownBatch>> Batches::find(const spool::JobSpec& sp
 
 Result<intake::BatchImport> Batches::import(intake::RowSource& source, const spool::JobSpec& spec,
                                             const intake::ImportOptions& options) {
+    earlier_.reset();
     Target target{*this};
     auto outcome = intake::import_source(source, target, spec, options);
     if (!outcome) {
         return outcome.error();
     }
     intake::BatchImport batch{std::move(outcome->report), std::move(outcome->job), {}};
-    if (!batch.job) {
-        return batch;
-    }
-    if (!again_) {
-        auto earlier = spool_.write([&](spool::Spool& spool) { return intake::earlier_job(spool, *batch.job); });
-        if (!earlier) {
-            return earlier.error();
+    if (earlier_) {
+        if (auto removed = remove(batch.job->id); !removed) {
+            return removed.error();
         }
-        if (*earlier) {
-            if (auto removed = remove(batch.job->id); !removed) {
-                return removed.error();
-            }
-            batch.earlier = std::move(*earlier);
-            batch.job.reset();
-            return batch;
-        }
+        batch.job.reset();
+        batch.earlier = std::move(earlier_);
+    } else if (batch.job) {
+        records_ += batch.job->records.count().value();
     }
-    records_ += batch.job->records.count().value();
     return batch;
 }
 
-/// The job and its ticket: a job without is one that nobody would start.
+/// The job and its ticket: a job without is one that nobody would start. If its records are there already it begins to
+/// go in the same step, before another import can give way to it.
 Result<spool::Job> Batches::commit(spool::Spool& spool, spool::JobImport& job, const std::string& report) {
     auto committed = job.commit(report);
-    if (!committed) {
-        return committed;
+    if (!committed || again_) {
+        const auto written = committed ? write_ticket(spool, *committed) : Result<void>{committed.error()};
+        return written ? committed : written.error();
     }
-    const auto earlier = again_ ? Result<std::optional<spool::Job>>{std::optional<spool::Job>{}}
-                                : intake::earlier_job(spool, *committed);
+    auto earlier = intake::earlier_job(spool, *committed);
     if (!earlier) {
         return earlier.error();
     }
-    if (!*earlier) { // otherwise it goes again
-        if (auto written = write_ticket(spool, *committed); !written) {
-            return written.error();
-        }
+    earlier_ = std::move(*earlier);
+    const auto done = earlier_ ? spool.remove_job_step(committed->id) : Result<bool>{false};
+    if (!done) {
+        return done.error();
     }
-    return committed;
+    const auto written = earlier_ ? Result<void>{} : write_ticket(spool, *committed);
+    return written ? committed : written.error();
 }
 
 Result<void> Batches::write_ticket(spool::Spool& spool, const spool::Job& job) {

@@ -44,6 +44,7 @@ private:
     bool enqueue_;
     std::atomic<std::uint64_t>& records_;
     bool again_ = false;
+    std::optional<spool::Job> earlier_; ///< to which the import under way gives way
 };
 
 } // namespace linefeed::service

@@ -8,7 +8,7 @@
 #include "daemon/preflight.hpp"
 #include "daemon/printer_commands.hpp"
 #include "service/event_log.hpp"
-#include "service/job_facts.hpp"
+#include "daemon/job_facts.hpp"
 #include "service/spool_access.hpp"
 
 #include <atomic>
@@ -21,6 +21,11 @@
 #include <thread>
 
 namespace linefeed::service {
+
+using daemon::JobFacts;
+using daemon::name_of;
+using daemon::phase_of;
+using daemon::read_facts;
 
 /// The settings in force, and which printer of them it is about.
 using SharedSettings = std::shared_ptr<const config::Settings>;

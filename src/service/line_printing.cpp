@@ -215,6 +215,9 @@ void Line::watch(JobRun& run, spool::JobId job) {
 
 void Line::take_notice(const feeder::Notice& notice, spool::JobId job) {
     using feeder::NoticeCode;
+    if (!notice.error.none()) {
+        frames_.keep(); // what was said before it
+    }
     switch (notice.code) {
     case NoticeCode::printing_started:
         event(event_kind::job_printing, job, "printing");
@@ -277,7 +280,7 @@ void Line::conclude(const Ending& given) {
         event(event_kind::storage_failed, ending.job, after.error().message);
         return;
     }
-    const daemon::JobView view = view_of(*after, {});
+    const daemon::JobView view = daemon::view_of(*after, {});
     if (shows_error(ending.outcome.code)) {
         event(event_kind::printer_error, ending.job, ending.words);
     }

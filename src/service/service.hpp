@@ -10,7 +10,7 @@
 #include "daemon/store_thread.hpp"
 #include "service/event_log.hpp"
 #include "service/folder.hpp"
-#include "service/job_facts.hpp"
+#include "daemon/job_facts.hpp"
 #include "service/line.hpp"
 #include "service/spool_access.hpp"
 #include "spool/json_text.hpp"
@@ -60,9 +60,11 @@ public:
     [[nodiscard]] std::optional<daemon::PrinterView> printer(std::string_view name) override;
     [[nodiscard]] std::vector<daemon::FolderView> folders() override;
     [[nodiscard]] Result<std::vector<daemon::EventView>> events(std::uint64_t after, std::size_t limit) override;
+    [[nodiscard]] Result<std::uint64_t> last_event() override;
     [[nodiscard]] std::uint64_t subscribe(std::function<void()> on_events) override;
     void unsubscribe(std::uint64_t subscription) override;
     [[nodiscard]] Result<std::vector<daemon::AuditView>> audit(std::uint64_t after, std::size_t limit) override;
+    [[nodiscard]] Result<std::uint64_t> last_audit() override;
     [[nodiscard]] Result<std::optional<Remembered>> remembered(const daemon::Caller& caller,
                                                                std::string_view key) override;
     [[nodiscard]] Result<void> remember(const daemon::Caller& caller, std::string_view key,
@@ -72,6 +74,8 @@ public:
     [[nodiscard]] Result<std::vector<daemon::JobView>> jobs(const daemon::JobFilter& filter) override;
     [[nodiscard]] Result<std::optional<daemon::JobView>> job(spool::JobId id) override;
     [[nodiscard]] Result<daemon::DoubtView> doubt(spool::JobId id) override;
+    [[nodiscard]] Result<std::vector<daemon::DoubtView::Record>> records(spool::JobId id,
+                                                                         RecordRange records) override;
     [[nodiscard]] Result<std::vector<spool::HistoryStretch>> history(spool::JobId id, RecordRange records) override;
     [[nodiscard]] Result<std::vector<spool::LedgerRow>> ledger(spool::JobId id, std::int64_t after,
                                                                std::size_t limit) override;

@@ -1,7 +1,7 @@
 // Jobs as people see them, and what stands in the ledger about them. All of it is read over connections of their own:
 // nobody who looks holds up the line.
 #include "daemon/doubt_evidence.hpp"
-#include "daemon/record_text.hpp"
+#include "daemon/job_records.hpp"
 #include "service/service.hpp"
 
 #include <algorithm>
@@ -15,6 +15,7 @@ namespace {
 
 constexpr std::size_t jobs_at_once = 200;
 constexpr std::size_t most_doubtful = 300;
+constexpr std::size_t most_records = 1000;
 constexpr std::size_t most_stretches = 1000;
 constexpr std::size_t rows_at_once = 4096;
 
@@ -22,43 +23,6 @@ bool wanted(const daemon::JobFilter& filter, const JobView& view) {
     const bool printer = filter.printer.empty() || filter.printer == view.printer;
     const bool phase = filter.phases.empty() || std::ranges::find(filter.phases, view.phase) != filter.phases.end();
     return printer && phase;
-}
-
-/// The places in the queues of all printers that are asked for.
-class Queues {
-public:
-    explicit Queues(spool::Spool& spool)
-        : spool_(spool) {}
-
-    [[nodiscard]] Result<std::optional<std::uint32_t>> place(const JobFacts& facts) {
-        if (!facts.ticket || !facts.ticket->place) {
-            return std::optional<std::uint32_t>{};
-        }
-        auto known = places_.find(facts.printer());
-        if (known == places_.end()) {
-            auto places = places_in(spool_, facts.printer());
-            if (!places) {
-                return places.error();
-            }
-            known = places_.emplace(facts.printer(), std::move(*places)).first;
-        }
-        const auto found = known->second.find(facts.job.id);
-        return found == known->second.end() ? std::nullopt : std::optional{found->second};
-    }
-
-private:
-    spool::Spool& spool_;
-    std::map<std::string, Places> places_;
-};
-
-Result<JobView> full_view(const JobFacts& facts, std::optional<JobPhase> live, Queues& queues) {
-    JobView view = view_of(facts, live);
-    const auto place = queues.place(facts);
-    if (!place) {
-        return place.error();
-    }
-    view.place = *place;
-    return view;
 }
 
 } // namespace
@@ -71,7 +35,7 @@ Result<std::vector<JobView>> Service::jobs(const daemon::JobFilter& filter) {
         }
     }
     return access_.read([&](spool::Spool& spool) -> Result<std::vector<JobView>> {
-        Queues queues{spool};
+        daemon::JobViews job_views{spool};
         std::vector<JobView> views;
         auto before = filter.after == spool::JobId{} ? std::nullopt : std::optional{filter.after};
         while (true) {
@@ -86,7 +50,7 @@ Result<std::vector<JobView>> Service::jobs(const daemon::JobFilter& filter) {
                     return facts.error();
                 }
                 const auto at = live.find(facts->job.id);
-                auto view = full_view(*facts, at == live.end() ? std::nullopt : std::optional{at->second}, queues);
+                auto view = job_views.view(*facts, at == live.end() ? std::nullopt : std::optional{at->second});
                 if (!view) {
                     return view.error();
                 }
@@ -118,8 +82,8 @@ Result<std::optional<JobView>> Service::job(spool::JobId id) {
         if (!facts) {
             return facts.error();
         }
-        Queues queues{spool};
-        auto view = full_view(*facts, live, queues);
+        daemon::JobViews job_views{spool};
+        auto view = job_views.view(*facts, live);
         return view ? Result<std::optional<JobView>>{std::move(*view)} : view.error();
     });
 }
@@ -136,19 +100,25 @@ Result<daemon::DoubtView> Service::doubt(spool::JobId id) {
         }
         daemon::DoubtView view;
         view.hole = evidence->hole;
-        const daemon::RecordFormat format = daemon::record_format(facts->job);
         for (const RecordRange& range : evidence->ranges) {
             view.count += range.count();
-            for (std::uint64_t i = 0; i < range.count().value() && view.records.size() < most_doubtful; ++i) {
-                const RecordNumber number = range.first() + RecordCount{i};
-                const auto page = spool.read_page(id, number);
-                if (!page) {
-                    return page.error();
-                }
-                view.records.push_back({number, daemon::record_fields(*page, number, format)});
-            }
         }
+        auto shown = daemon::records_of(spool, facts->job, evidence->ranges, most_doubtful);
+        if (!shown) {
+            return shown.error();
+        }
+        view.records = std::move(*shown);
         return view;
+    });
+}
+
+Result<std::vector<daemon::DoubtView::Record>> Service::records(spool::JobId id, RecordRange records) {
+    return access_.read([&](spool::Spool& spool) -> Result<std::vector<daemon::DoubtView::Record>> {
+        const auto facts = read_facts(spool, id);
+        if (!facts) {
+            return facts.error();
+        }
+        return daemon::records_of(spool, facts->job, {&records, 1}, most_records);
     });
 }
 

@@ -122,6 +122,14 @@ Result<std::vector<daemon::EventView>> Service::events(std::uint64_t after, std:
     });
 }
 
+Result<std::uint64_t> Service::last_event() {
+    return access_.read([](spool::Spool& spool) { return spool.last_event(); });
+}
+
+Result<std::uint64_t> Service::last_audit() {
+    return access_.read([](spool::Spool& spool) { return spool.last_audit(); });
+}
+
 std::uint64_t Service::subscribe(std::function<void()> on_events) {
     return events_.subscribe(std::move(on_events));
 }

@@ -90,6 +90,14 @@ protocol::MailStatus PrinterModel::mail_status_answer() {
     return status;
 }
 
+protocol::Counters PrinterModel::counters() const {
+    protocol::Counters counters{product_counter_, stop_after_, total_prints_};
+    if (settings_.habits.no_total_counter) {
+        counters.total.reset();
+    }
+    return counters;
+}
+
 std::uint32_t PrinterModel::speed_shown(std::uint32_t dm_per_min) const {
     constexpr std::uint32_t dm_in_m = 10;
     const bool metres = settings_.habits.speed_in_metres || settings_.profile.speed_in_metres;
@@ -112,7 +120,7 @@ void PrinterModel::answer(ConnectionId connection, const protocol::Frame& frame,
     } else if (*parameter == Parameter::SM) {
         protocol::append_message(out, mail_status_answer());
     } else if (*parameter == Parameter::CC) {
-        protocol::append_message(out, protocol::Counters{product_counter_, stop_after_, total_prints_});
+        protocol::append_message(out, counters());
     } else if (*parameter == Parameter::VS) {
         protocol::append_message(out, versions_of(settings_), settings_.profile.escapes);
     } else if (*parameter == Parameter::JL) {

@@ -132,6 +132,7 @@ private:
     // printer_answers.cpp: what clients ask
     void answer(ConnectionId connection, const protocol::Frame& frame, bool secured, Instant now);
     [[nodiscard]] protocol::MailStatus mail_status_answer();
+    [[nodiscard]] protocol::Counters counters() const;
     [[nodiscard]] std::string path_frame() const;
     [[nodiscard]] std::string values_of(protocol::Parameter parameter, Instant now) const;
     [[nodiscard]] std::string print_parameter(std::string_view argument) const;

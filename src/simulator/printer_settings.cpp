@@ -12,7 +12,7 @@ struct NamedHabit {
     bool Habits::*member;
 };
 
-constexpr std::array<NamedHabit, 11> switches{{
+constexpr std::array<NamedHabit, 12> switches{{
     {"ignore-stop-at", &Habits::ignore_stop_at},
     {"stop-at-only-while-printing", &Habits::stop_at_only_while_printing},
     {"stale-mail-status", &Habits::stale_mail_status},
@@ -24,6 +24,7 @@ constexpr std::array<NamedHabit, 11> switches{{
     {"standby-silent", &Habits::standby_silent},
     {"abort-print-on-stop", &Habits::abort_print_on_stop},
     {"escaped-paths", &Habits::escaped_paths},
+    {"no-total-counter", &Habits::no_total_counter},
 }};
 
 } // namespace

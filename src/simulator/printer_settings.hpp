@@ -37,13 +37,14 @@ struct Habits {
     bool standby_silent = false;              ///< in standby not even `?RS` is answered
     bool abort_print_on_stop = false;         ///< a stop breaks off the running print, which stays "not finished"
     bool escaped_paths = false;               ///< `\` of paths is doubled in answers, as the escape rule demands
+    bool no_total_counter = false;            ///< `=CC` ends before the total print counter
     LineEnd line_end = LineEnd::cr;
 
     friend bool operator==(const Habits&, const Habits&) = default;
 };
 
 /// The names that set_habit() knows, in the order of help texts.
-inline constexpr std::array<std::string_view, 13> habit_names{"ignore-stop-at",
+inline constexpr std::array<std::string_view, 14> habit_names{"ignore-stop-at",
                                                               "stop-at-only-while-printing",
                                                               "stale-mail-status",
                                                               "sixth-value",
@@ -54,6 +55,7 @@ inline constexpr std::array<std::string_view, 13> habit_names{"ignore-stop-at",
                                                               "standby-silent",
                                                               "abort-print-on-stop",
                                                               "escaped-paths",
+                                                              "no-total-counter",
                                                               "crlf",
                                                               "lfcr"};
 

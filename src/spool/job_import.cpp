@@ -288,11 +288,7 @@ Result<JobImport> Spool::begin_import(const JobSpec& spec, std::string import_re
     if (!statement) {
         return statement.error();
     }
-    statement->bind(1, spec.source.path)
-        .bind(2, static_cast<std::int64_t>(spec.source.size_bytes))
-        .bind(3, spec.source.modified_ns)
-        .bind(4, static_cast<std::int64_t>(spec.source.inode))
-        .bind(5, spec.source.companion)
+    bind_source(*statement, 1, spec.source)
         .bind(6, spec.layout)
         .bind(7, std::int64_t{spec.base.value()})
         .bind(8, job.created_ns)

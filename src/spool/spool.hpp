@@ -132,7 +132,11 @@ public:
     [[nodiscard]] Result<void> add_events(std::span<const Event> events);
     /// Those behind `after`, ascending, at most `limit`.
     [[nodiscard]] Result<std::vector<Event>> events(std::uint64_t after, std::size_t limit);
+    /// The id of the newest event; 0 = there is none.
+    [[nodiscard]] Result<std::uint64_t> last_event();
     [[nodiscard]] Result<void> add_audit(const AuditEntry& entry);
+    /// The same of the audit log.
+    [[nodiscard]] Result<std::uint64_t> last_audit();
     [[nodiscard]] Result<std::vector<AuditEntry>> audit(std::uint64_t after, std::size_t limit);
     /// The answer that `caller` was given for `key`, not before that time.
     [[nodiscard]] Result<std::optional<Answer>> answer(const std::string& caller, const std::string& key,

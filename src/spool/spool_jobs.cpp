@@ -101,6 +101,14 @@ Result<std::optional<Job>> Spool::job(JobId id) {
     return found->empty() ? std::optional<Job>{} : std::optional{std::move(found->front())};
 }
 
+Statement& bind_source(Statement& statement, int first, const SourceFingerprint& source) {
+    return statement.bind(first, source.path)
+        .bind(first + 1, static_cast<std::int64_t>(source.size_bytes))
+        .bind(first + 2, source.modified_ns)
+        .bind(first + 3, static_cast<std::int64_t>(source.inode))
+        .bind(first + 4, source.companion);
+}
+
 Result<std::optional<Job>> Spool::find_by_source(const JobSpec& spec) {
     static const std::string sql =
         std::string{select_jobs} +
@@ -111,13 +119,7 @@ Result<std::optional<Job>> Spool::find_by_source(const JobSpec& spec) {
     if (!statement) {
         return statement.error();
     }
-    statement->bind(1, spec.source.path)
-        .bind(2, static_cast<std::int64_t>(spec.source.size_bytes))
-        .bind(3, spec.source.modified_ns)
-        .bind(4, static_cast<std::int64_t>(spec.source.inode))
-        .bind(5, spec.source.companion)
-        .bind(6, spec.layout)
-        .bind(7, std::int64_t{spec.base.value()});
+    bind_source(*statement, 1, spec.source).bind(6, spec.layout).bind(7, std::int64_t{spec.base.value()});
     auto found = read_jobs(*statement, state_->database->path());
     if (!found) {
         return found.error();
@@ -173,13 +175,8 @@ Result<void> Spool::State::write_source(JobId id, const SourceFingerprint& sourc
     if (!statement) {
         return statement.error();
     }
-    statement->bind(1, static_cast<std::int64_t>(id))
-        .bind(2, source.path)
-        .bind(3, static_cast<std::int64_t>(source.size_bytes))
-        .bind(4, source.modified_ns)
-        .bind(5, static_cast<std::int64_t>(source.inode))
-        .bind(6, source.companion);
-    return statement->run();
+    statement->bind(1, static_cast<std::int64_t>(id));
+    return bind_source(*statement, 2, source).run();
 }
 
 Result<void> Spool::update_source(JobId id, const SourceFingerprint& source) {

@@ -102,6 +102,28 @@ Result<std::vector<Event>> Spool::events(std::uint64_t after, std::size_t limit)
     }
 }
 
+namespace {
+
+/// As a number that a statement gives, 0 for nothing.
+Result<std::uint64_t> newest(Database& database, const char* sql) {
+    auto statement = database.prepare(sql);
+    if (!statement) {
+        return statement.error();
+    }
+    const auto row = statement->step();
+    return row ? Result<std::uint64_t>{static_cast<std::uint64_t>(statement->number(0))} : row.error();
+}
+
+} // namespace
+
+Result<std::uint64_t> Spool::last_event() {
+    return newest(*state_->database, "SELECT ifnull(max(id), 0) FROM events");
+}
+
+Result<std::uint64_t> Spool::last_audit() {
+    return newest(*state_->database, "SELECT ifnull(max(id), 0) FROM audit");
+}
+
 Result<void> Spool::add_audit(const AuditEntry& entry) {
     if (auto writable = state_->check_writable(); !writable) {
         return writable;

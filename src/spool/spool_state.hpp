@@ -17,6 +17,10 @@ struct JobLedger {
     RunId known_run{}; ///< a run that is known to belong to the job
 };
 
+/// Binds the five values of a source, in the order of the columns source_path … source_companion, from the parameter
+/// `first` on.
+Statement& bind_source(Statement& statement, int first, const SourceFingerprint& source);
+
 struct Spool::State {
     /// How many jobs' ledger states are kept in memory; beyond that all are dropped and read again when needed.
     static constexpr std::size_t max_cached_ledgers = 64;

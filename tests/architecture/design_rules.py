@@ -15,12 +15,12 @@ MAY_USE = {
     "simulator": {"base", "protocol"},
     "config": {"base", "protocol", "feeder", "link"},
     "daemon": {"base", "protocol", "feeder", "session", "link", "spool", "intake", "config"},
-    "service": {"base", "protocol", "feeder", "session", "link", "spool", "intake", "config", "daemon"},
     "api": {"base", "protocol", "link", "spool", "config", "daemon"},
+    "service": {"base", "protocol", "feeder", "session", "link", "spool", "intake", "config", "daemon"},
     "cli": {"base", "protocol", "feeder", "session", "link", "spool", "intake", "config", "daemon"},
     "client": {"base", "protocol", "spool", "intake", "config", "daemon", "api", "cli"},
     "linefeed": {"base", "protocol", "intake", "daemon", "cli", "client"},
-    "linefeedd": {"base", "protocol", "spool", "config", "daemon", "service", "cli"},
+    "linefeedd": {"base", "spool", "config", "daemon", "service", "api", "cli"},
 }
 
 # Folder -> folder -> the only headers of the second that the first may include: the feeder knows the message types, never bytes.

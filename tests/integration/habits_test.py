@@ -39,6 +39,9 @@ class Habits(harness.TestCase):
     def test_five_value_status_and_error_bit_24(self):
         self.run_with("--habit", "five-value-status", "--habit", "error-bit-24")
 
+    def test_no_total_counter(self):
+        self.run_with("--habit", "no-total-counter")
+
     def test_cr_lf(self):
         self.run_with("--habit", "crlf")
 

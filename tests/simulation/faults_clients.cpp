@@ -57,6 +57,10 @@ bool Faults::another_job() {
     if (host_.records_open() && first + count >= next && first <= next + near) {
         first = next + near + 1;
     }
+    // Without a counter its stop point could be all that tells it from ours.
+    if (!context_.scenario.prints_are_counted() && first + count - 1 == context_.scenario.last()) {
+        return false;
+    }
     line_.another_job(first, count);
     return true;
 }
@@ -85,11 +89,15 @@ std::uint64_t Faults::newest_in_printer() {
 /// A flush in mid-run leaves a gap when records of ours are on their way to the printer: it goes on with them, behind
 /// those that it has thrown away. No stop point shows that. The feeder sees a large gap by the leap in the numbers
 /// (Pacing::leaps()), and then asks the counter; a gap that a fast line might have printed since the last answer cannot
-/// be told from prints. So only what it can see is flushed.
+/// be told from prints, and without a counter none can. So only what it can see is flushed.
 bool Faults::gap_would_show() {
     const std::uint64_t lost = line_.look().fifo().records();
-    if (!host_.running() || newest_in_printer() == context_.scenario.last()) {
+    const bool counted = context_.scenario.prints_are_counted();
+    if (newest_in_printer() == context_.scenario.last() || (counted && !host_.running())) {
         return lost > 0; // nothing comes behind the gap, or somebody who counts it
+    }
+    if (!counted) {
+        return false;
     }
     const auto seconds = [](Duration d) { return std::chrono::duration<double>(d).count(); };
     const Scenario& scenario = context_.scenario;

@@ -5,7 +5,8 @@
 //   linefeed_simulation --seed N --trace      one seed with everything that happens
 //   linefeed_simulation --from A --count N    N seeds
 //   linefeed_simulation --hours H             seeds until the line has printed for H hours
-//   linefeed_simulation --regressions FILE    the seeds of a list (first word of a line; # begins a comment)
+//   linefeed_simulation --regressions FILE    the seeds of a list (first word of a line, and perhaps a profile behind it;
+//                                             # begins a comment)
 //   linefeed_simulation … --twice             each seed twice; the traces must agree
 //   linefeed_simulation --profile line        the speed at 1 000 prints/s without faults
 //
@@ -21,7 +22,9 @@
 #include <cstdio>
 #include <fstream>
 #include <malloc.h>
+#include <sstream>
 #include <string>
+#include <string_view>
 
 namespace linefeed::simulation {
 namespace {
@@ -47,11 +50,15 @@ void on_abort(int) {
     std::fflush(stdout);
 }
 
+Profile profile_of(std::string_view word) {
+    return word == "line" ? Profile::line : word == "counted" ? Profile::counted : Profile::mixed;
+}
+
 class Program {
 public:
     explicit Program(const Options& options)
         : options_(options)
-        , profile_(options.profile == "line" ? Profile::line : Profile::mixed) {}
+        , profile_(profile_of(options.profile)) {}
 
     int run() {
         const auto begin = std::chrono::steady_clock::now();
@@ -99,9 +106,13 @@ private:
         std::ifstream list{options_.regressions};
         std::string line;
         while (std::getline(list, line)) {
-            const std::string word = line.substr(0, line.find_first_of(" \t#"));
-            if (!word.empty()) {
-                run_one(std::stoull(word));
+            std::istringstream words{line.substr(0, line.find('#'))};
+            std::uint64_t seed = 0;
+            std::string word;
+            if (words >> seed) {
+                words >> word;
+                profile_ = profile_of(word);
+                run_one(seed);
             }
         }
         if (seeds_ == 0) {
@@ -151,7 +162,8 @@ int main(int argc, char** argv) {
     app.add_option("--count", options.count, "How many seeds");
     app.add_option("--hours", options.hours, "Go on until the line has printed for so many hours");
     app.add_option("--regressions", options.regressions, "Run the seeds of this file")->check(CLI::ExistingFile);
-    app.add_option("--profile", options.profile, "mixed or line")->check(CLI::IsMember({"mixed", "line"}));
+    app.add_option("--profile", options.profile, "mixed, counted or line")
+        ->check(CLI::IsMember({"mixed", "counted", "line"}));
     app.add_flag("--trace", options.trace, "Print everything that happens");
     app.add_flag("--twice", options.twice, "Run each seed twice and compare");
     app.add_flag("--stop-at-first", options.stop_at_first, "End at the first violation");

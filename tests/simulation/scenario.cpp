@@ -106,6 +106,21 @@ void draw_printer(Scenario& scenario, Random random) {
     habits.line_end = static_cast<simulator::LineEnd>(random.below(3));
 }
 
+/// A printer without total print counter. Where no stop point shows a gap either, nobody can know of it: then nobody
+/// makes one.
+void draw_counter(Scenario& scenario, Random random) {
+    scenario.printer.habits.no_total_counter = random.chance(0.25);
+    if (scenario.gap_would_show()) {
+        return;
+    }
+    for (const Fault fault : {Fault::stop_and_go, Fault::stop_under_refill, Fault::panel_start,
+                              Fault::start_between_looks, Fault::foreign_flush}) {
+        scenario.weights[static_cast<std::size_t>(fault)] = 0;
+    }
+    scenario.weights[static_cast<std::size_t>(Fault::operator_stop)] += 1;
+    scenario.start_under_fill = false;
+}
+
 } // namespace
 
 Scenario draw_scenario(std::uint64_t seed, Profile profile) {
@@ -161,6 +176,9 @@ Scenario draw_scenario(std::uint64_t seed, Profile profile) {
         Random serial = Random{seed}.fork(4);
         scenario.damage = serial.chance(0.2) ? 1e-5 * static_cast<double>(serial.spread(10, 1000)) : 0;
         scenario.start_under_fill = Random{seed}.fork(5).chance(0.1);
+    }
+    if (profile != Profile::counted) {
+        draw_counter(scenario, Random{seed}.fork(6));
     }
     return scenario;
 }

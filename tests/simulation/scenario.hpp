@@ -85,6 +85,12 @@ struct Scenario {
     std::uint32_t skips_percent = 0; ///< of his decisions about records in doubt
     std::uint32_t reprints_percent = 0;
 
+    /// The total print counter tells how many records a printer has thrown away when it goes on behind them.
+    [[nodiscard]] bool prints_are_counted() const { return !printer.habits.no_total_counter; }
+    /// Or the stop point, which a stop wipes out, shows that it has thrown some away.
+    [[nodiscard]] bool gap_would_show() const {
+        return prints_are_counted() || !(printer.habits.ignore_stop_at || printer.habits.stop_at_only_while_printing);
+    }
     /// Network, disk and the beat of the feeder leave no excuse for an underrun.
     [[nodiscard]] bool supply_is_sufficient() const;
     /// What stands on the product of a record: the fields joined by TAB.
@@ -95,8 +101,9 @@ struct Scenario {
 
 /// Which family of scenarios.
 enum class Profile {
-    mixed, ///< everything
-    line,  ///< 1 000 prints/s without faults: measures the speed of the simulation
+    mixed,   ///< everything
+    counted, ///< the same, but every printer has its total print counter
+    line,    ///< 1 000 prints/s without faults: measures the speed of the simulation
 };
 
 [[nodiscard]] Scenario draw_scenario(std::uint64_t seed, Profile profile);

@@ -26,12 +26,13 @@ TEST(FindService, shouldPreferOptionsToTheVariableAndThatToTheDefault) {
     EXPECT_EQ(tcp->address.port, 8631);
     EXPECT_TRUE(tcp->address.socket.empty());
     EXPECT_EQ(find_service({"", "http://[::1]:8631", ""}, "")->address.host, "::1");
+    EXPECT_EQ(find_service({"", "http://a", ""}, "")->address.port, 8631);
 }
 
 TEST(FindService, shouldRefuseWhatContradictsItself) {
-    for (const ServiceOptions& options : {ServiceOptions{"/y", "http://a:1", ""}, ServiceOptions{"", "https://a:1", ""},
-                                          ServiceOptions{"", "a:1", ""}, ServiceOptions{"", "http://a", ""},
-                                          ServiceOptions{"", "http://a:1/x", ""}, ServiceOptions{"", "", "/token"}}) {
+    for (const ServiceOptions& options :
+         {ServiceOptions{"/y", "http://a:1", ""}, ServiceOptions{"", "https://a:1", ""}, ServiceOptions{"", "a:1", ""},
+          ServiceOptions{"", "http://a:1/x", ""}, ServiceOptions{"", "", "/token"}}) {
         const auto place = find_service(options, "");
         ASSERT_FALSE(place) << options.url;
         EXPECT_EQ(place.error().kind, FailureKind::usage) << options.url;

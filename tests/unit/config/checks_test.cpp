@@ -50,6 +50,24 @@ TEST(Checks, shouldRefuseFoldersInEachOther) {
                 ElementsAre("f.yaml:5:13: folders.b.path: it and that of folder a lie in each other: keep them apart"));
 }
 
+TEST(Checks, shouldRefuseFilesOfTheServiceInAFolder) {
+    const auto refused = [](const std::string& more) {
+        return refusals_of(with_printer("folders: {f: {path: /d, layout: names, printer: line1}}\n" + more));
+    };
+    EXPECT_THAT(refused("spool: /d2/s\nerrors: /e\nhttp: {tokens_file: /t}\ncontrol: {socket: /s}\n"), IsEmpty());
+    EXPECT_THAT(refused("spool: /d/s\n"), ElementsAre("f.yaml:4:8: spool: \"/d/s\" lies in folder f: keep it apart"));
+    EXPECT_THAT(refused("errors: /d/x/../e\n"),
+                ElementsAre("f.yaml:4:9: errors: \"/d/e\" lies in folder f: keep it apart"));
+    EXPECT_THAT(refused("http: {tokens_file: /d/t}\n"),
+                ElementsAre(testing::HasSubstr("http.tokens_file: \"/d/t\" lies in folder f")));
+    EXPECT_THAT(refused("control: {socket: /d/done/s}\n"),
+                ElementsAre(testing::HasSubstr("control.socket: \"/d/done/s\" lies in folder f")));
+    EXPECT_THAT(refusals_of(with_printer("folders: {f: {path: /var/lib/linefeed, layout: names, printer: line1}}\n")),
+                ElementsAre("f.yaml:3:21: folders.f.path: \"/var/lib/linefeed/spool.db\" lies in folder f: keep it "
+                            "apart"))
+        << "where it is without being set, too";
+}
+
 TEST(Checks, shouldRefuseTwoPrintersAtOneAddress) {
     EXPECT_THAT(refusals_of("printers: {a: {address: tcp://h}, b: {address: \"tcp://h:3000/\"}}\n"),
                 ElementsAre("f.yaml:1:48: printers.b.address: is the address of printer a already"));

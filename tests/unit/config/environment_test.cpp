@@ -69,11 +69,12 @@ TEST(Environment, shouldRefuseWhatOnlyLooksLikeASetting) {
         refusals_of("spool: /a\n", {{"LINEFEED_PRINTERS_LINE9_ADDRESS", "tcp://h"}}),
         ElementsAre("LINEFEED_PRINTERS_LINE9_ADDRESS: no setting has this name; it is LINEFEED_ and the key path in "
                     "capitals, with _ in between"));
-    EXPECT_THAT(
-        refusals_of(
-            "spool: /a\n",
-            {{"LINEFEED_BIN_DIR", "x"}, {"LINEFEED_LONG_TESTS", "1"}, {"LINEFEED_VERSION", "1"}, {"HOME", "/"}}),
-        IsEmpty());
+    EXPECT_THAT(refusals_of("spool: /a\n", {{"LINEFEED_BIN_DIR", "x"},
+                                            {"LINEFEED_LONG_TESTS", "1"},
+                                            {"LINEFEED_SOCKET", "/s"},
+                                            {"LINEFEED_VERSION", "1"},
+                                            {"HOME", "/"}}),
+                IsEmpty());
 }
 
 TEST(Environment, shouldNotHideWhatIsWrongWithTheFile) {

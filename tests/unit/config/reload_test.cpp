@@ -89,6 +89,14 @@ TEST(Reload, shouldKeepWhatOnlyARestartChanges) {
     }
 }
 
+/// The address stays until a restart: so must what protects it.
+TEST(Reload, shouldNotTakeTheTokensAwayFromAnAddressThatOthersReach) {
+    const Settings before = settings_of("http: {listen: 0.0.0.0, tokens_file: t}\n");
+    const Settings running = without_restart(before, settings_of("http: {listen: 127.0.0.1}\n"));
+    EXPECT_EQ(running.http.listen, "0.0.0.0");
+    EXPECT_EQ(running.http.tokens_file, "/e/t");
+}
+
 TEST(Reload, shouldKnowEveryKeyThatAPrinterCanHave) {
     EXPECT_EQ(with_wildcards("printers.line1.queue.chain"), "printers.*.queue.chain");
     EXPECT_EQ(with_wildcards("printers.line1"), "printers.*");

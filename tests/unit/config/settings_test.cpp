@@ -160,13 +160,23 @@ TEST(Example, shouldBeAcceptedAndMeanWhatItsCommentsSay) {
     // The printer's own policy goes before the table's, the table's before the one for unlisted numbers.
     const PrinterSettings& line1 = *settings->printer("line1");
     const PrinterSettings& line2 = *settings->printer("line2");
-    EXPECT_EQ(settings->policy(line1, {10202}), ErrorPolicy::acknowledge);
-    EXPECT_EQ(settings->policy(line2, {10202}), ErrorPolicy::report);
+    EXPECT_EQ(settings->policy(line1, {51001}), ErrorPolicy::stop);
+    EXPECT_EQ(settings->policy(line2, {51001}), ErrorPolicy::report);
     EXPECT_EQ(settings->policy(line2, {5043}), ErrorPolicy::stop);
     EXPECT_EQ(settings->policy(line2, {77}), ErrorPolicy::report);
-    EXPECT_EQ(settings->acknowledged(line1).size(), 2U);
-    EXPECT_EQ(settings->acknowledged(line2).size(), 1U);
-    EXPECT_EQ(settings->acknowledged(line2)[0], 1223U);
+    for (const PrinterSettings* const line : {&line1, &line2}) {
+        ASSERT_EQ(settings->acknowledged(*line).size(), 1U) << "nothing but the end of a job";
+        EXPECT_EQ(settings->acknowledged(*line)[0], 1223U);
+    }
+}
+
+TEST(Acknowledged, shouldBeWhatThePrinterSaysAndTheTableWhereItSaysNothing) {
+    Settings settings;
+    settings.errors.entries = {{1223, "m", "a", ErrorPolicy::acknowledge}, {7, "m", "a", ErrorPolicy::acknowledge}};
+    const PrinterSettings printer{
+        .name = "p", .address = {}, .errors = {{7, ErrorPolicy::stop}, {10202, ErrorPolicy::acknowledge}}};
+    const auto numbers = settings.acknowledged(printer);
+    EXPECT_THAT((std::vector<std::uint32_t>{numbers.begin(), numbers.end()}), ElementsAre(1223U, 10202U));
 }
 
 } // namespace

@@ -104,6 +104,7 @@ TEST(TextSetting, shouldNeedQuotesWhereYamlMightReadSomethingElse) {
     }
     EXPECT_EQ(text("\"\""), "expected a text of 1 to 1000 bytes, found the text \"\"");
     EXPECT_EQ(text("null"), "expected a text of 1 to 1000 bytes, found nothing");
+    EXPECT_EQ(text("\"a\\0b\""), "expected a text of 1 to 1000 bytes, found the text \"a\\x00b\"");
     EXPECT_EQ(text("[a]"), "expected a text of 1 to 1000 bytes, found a list");
     EXPECT_EQ(text(std::string(1001, 'a')),
               "expected a text of 1 to 1000 bytes, found \"" + std::string(60, 'a') + "...\" (1001 bytes)");

@@ -175,7 +175,7 @@ TEST_F(PreflightTest, shouldCompareTheJobFileWithTheOneThatIsWanted) {
     printer_.job_file.reset();
     EXPECT_THAT(finding("job_file"), HasSubstr("ok: "));
     facts_.job = protocol::JobName{};
-    EXPECT_THAT(finding("job_file"), HasSubstr("problem: no job file is loaded - Load the job"));
+    EXPECT_THAT(finding("job_file"), HasSubstr("warning: no job file is loaded - Load the job"));
 }
 
 TEST(SameJobFile, shouldOverlookHowThePathIsWritten) {

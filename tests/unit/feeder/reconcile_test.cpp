@@ -135,18 +135,29 @@ TEST(Reconcile, shouldBelieveTheNumberAloneWhenTheCounterIsMissing) {
     const std::string by_number = "printed 111-115, in doubt none, unused 116-120 by mail status";
     OpenRun run = run_with(110);
     run.total_before.reset();
-    EXPECT_EQ(verdict(run, says(115, 1015)), by_number);
+    EXPECT_EQ(verdict(run, uninterrupted(says(115, std::nullopt))), by_number);
     EXPECT_EQ(verdict(run_with(110), uninterrupted(says(115, std::nullopt))), by_number);
-    // It was answered as the run began, and it could tell whether records were skipped.
-    EXPECT_EQ(verdict(run_with(110), says(115, std::nullopt)), doubt_from_111);
     Evidence unseen = uninterrupted(says(115, std::nullopt));
     unseen.restart_unseen = true;
+    EXPECT_EQ(verdict(run, unseen), by_number) << "nothing would ever be proven otherwise";
+    // It was answered as the run began, and it could tell whether records were skipped.
     EXPECT_EQ(verdict(run_with(110), unseen), doubt_from_111);
 }
 
+/// While we were away it may have been stopped and started again, or have printed another job with numbers like ours.
+TEST(Reconcile, shouldDoubtTheNumberOfAPrinterWithoutCounterBehindAnInterruption) {
+    OpenRun run = run_with(110);
+    run.total_before.reset();
+    EXPECT_EQ(verdict(run, says(115, std::nullopt)), doubt_from_111);
+    EXPECT_EQ(verdict(run, says(115, 1015)), doubt_from_111) << "it is not known how many there were before";
+    EXPECT_EQ(verdict(run_with(110), says(115, std::nullopt)), doubt_from_111);
+    EXPECT_EQ(verdict(run_with(110), says(115, 1000)), doubt_from_111) << "a counter that does not move";
+}
+
 TEST(Reconcile, shouldBelieveTheNumberWhenTheCounterDoesNotMove) {
-    EXPECT_EQ(verdict(run_with(110), says(115, 1000)), "printed 111-115, in doubt none, unused 116-120 by mail status");
-    EXPECT_EQ(verdict(run_with(110), says(115, 1000, false)),
+    EXPECT_EQ(verdict(run_with(110), uninterrupted(says(115, 1000))),
+              "printed 111-115, in doubt none, unused 116-120 by mail status");
+    EXPECT_EQ(verdict(run_with(110), uninterrupted(says(115, 1000, false))),
               "printed 111-114, in doubt 115-115, unused 116-120 by mail status");
 }
 
@@ -179,7 +190,7 @@ TEST(Reconcile, shouldTakeAPrintedEndMarkerForTheProofOfTheLastRecord) {
     EXPECT_EQ(verdict(run, uninterrupted(says(121, 1020, false))), by_counter_too);
     EXPECT_EQ(verdict(run, says(121, 1020, false)), "printed none, in doubt 111-120, unused none by mail status");
     EXPECT_EQ(verdict(run, uninterrupted(says(121, std::nullopt))), all_printed);
-    EXPECT_EQ(verdict(run, says(121, 1000)), all_printed) << "a counter that does not move";
+    EXPECT_EQ(verdict(run, uninterrupted(says(121, 1000))), all_printed) << "a counter that does not move";
     EXPECT_EQ(verdict(run, says(121, 1020)), doubt_from_111) << "a record was skipped";
     EXPECT_EQ(verdict(run, uninterrupted(says(121, 1020))), doubt_from_111);
     EXPECT_EQ(verdict(run, says(121, 1022)), doubt_from_111) << "something else was printed";

@@ -35,14 +35,24 @@ TEST_F(BatchStoreTest, shouldFindAJobByTheBytesOfItsFile) {
     EXPECT_FALSE(batches->find(spec("a", 'b')).value());
 }
 
-TEST_F(BatchStoreTest, shouldTakeTheSameBytesReadInAnotherWayForAnotherBatch) {
+TEST_F(BatchStoreTest, shouldTakeTheSameBytesReadInAnotherWayInAnotherFolderForAnotherBatch) {
+    import("n\n1\n", spec("a", 'a'));
+    spool::JobSpec elsewhere = spec("a", 'a', R"({"columns":["n"]})");
+    elsewhere.source.path = "/other/done/a";
+    EXPECT_FALSE(batches->find(elsewhere).value());
+    elsewhere.layout = "{}";
+    EXPECT_TRUE(batches->find(elsewhere).value());
+    elsewhere.base = RecordNumber{7};
+    EXPECT_FALSE(batches->find(elsewhere).value());
+}
+
+TEST_F(BatchStoreTest, shouldKnowABatchOfTheSameFolderHoweverItWouldBeReadNow) {
     const spool::Job job = *import("n\n1\n", spec("a", 'a')).job;
-    EXPECT_FALSE(batches->find(spec("b", 'a', R"({"columns":["n"]})")).value());
-    spool::JobSpec base = spec("b", 'a');
-    base.base = RecordNumber{7};
-    EXPECT_FALSE(batches->find(base).value());
-    // But the very file is the one of the job, however it would be read now.
-    EXPECT_EQ(batches->find(spec("a", 'a', R"({"columns":["n"]})")).value()->job.id, job.id);
+    const auto other = batches->find(spec("b", 'a', R"({"columns":["n"]})")).value();
+    ASSERT_TRUE(other);
+    EXPECT_EQ(other->job.id, job.id);
+    EXPECT_FALSE(other->this_file);
+    EXPECT_TRUE(batches->find(spec("a", 'a', R"({"columns":["n"]})")).value()->this_file);
 }
 
 TEST_F(BatchStoreTest, shouldNotStoreTheSameRecordsFromOtherBytes) {
@@ -64,6 +74,23 @@ TEST_F(BatchStoreTest, shouldCompareTheRecordsOfAJobThatItFinds) {
     EXPECT_EQ(found->job.id, job.id);
     EXPECT_FALSE(found->this_file);
     EXPECT_FALSE(spool->job(second.id).value());
+}
+
+/// Two folders, one thread that stores: the pages of both come in turn.
+TEST_F(BatchStoreTest, shouldKeepOneOfTwoImportsThatOverlap) {
+    auto rows = open_source(write("n\n1\n", "first.csv"), {}).value();
+    ImportOptions options;
+    std::optional<spool::Job> second;
+    options.check_source = [&]() -> Result<void> {
+        second = import("n\r\n1\r\n", spec("b", 'b')).job; // begun later, ready earlier
+        return {};
+    };
+    const BatchImport first = batches->import(*rows, spec("a", 'a'), options).value();
+    ASSERT_TRUE(second);
+    EXPECT_FALSE(first.job);
+    ASSERT_TRUE(first.earlier);
+    EXPECT_EQ(first.earlier->id, second->id);
+    EXPECT_EQ(spool->jobs().value().size(), 1U);
 }
 
 TEST_F(BatchStoreTest, shouldKeepAJobOfWhichSomethingIsPrinted) {

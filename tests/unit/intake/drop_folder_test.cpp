@@ -3,6 +3,7 @@
 #include <climits>
 
 #include <fcntl.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/un.h>
@@ -161,6 +162,83 @@ TEST_F(DropFolderTest, shouldFindWhatHappenedWhileEventsWereLost) {
     EXPECT_THAT(events.lines, ElementsAre("a.csv: imported"));
 }
 
+TEST_F(DropFolderTest, shouldNotComeToRestBeforeItHasLookedForWhatItMissed) {
+    settings.rescan = 24h;
+    std::size_t most = 16384;
+    std::ifstream{"/proc/sys/fs/inotify/max_queued_events"} >> most;
+    start();
+    run();
+    drop("0");
+    for (std::size_t i = 0; i < most; ++i) {
+        fs::rename(settings.folder / std::to_string(i), settings.folder / std::to_string(i + 1));
+    }
+    drop("a.csv");
+    run();
+    EXPECT_THAT(events.lines, ElementsAre("a.csv: imported"));
+}
+
+TEST_F(DropFolderTest, shouldHoldAnEmptyFileThatIsStillOpen) {
+    start();
+    {
+        std::ofstream file{settings.folder / "a.csv"};
+        run_for(60s);
+        EXPECT_THAT(events.lines, IsEmpty());
+        EXPECT_THAT(staying(), ElementsAre("a.csv: it is empty, and whoever made it has not closed it yet"));
+        file << "name\nA\n";
+    }
+    run_for(3s);
+    EXPECT_THAT(events.lines, ElementsAre("a.csv: imported"));
+}
+
+TEST_F(DropFolderTest, shouldTakeOthersWhileAFileChangesAndChanges) {
+    drop("a.csv", "name\nA\n");
+    start();
+    bool others = false;
+    events.on_step = [&](DropStep step) {
+        if (step == DropStep::claimed && !others) {
+            others = true;
+            drop("b.csv", "name\nB\n");
+            drop("c.csv", "name\nC\n");
+        }
+        if (step == DropStep::hashed) {
+            std::ofstream{settings.folder / "processing/a.csv", std::ios::app} << "more\n";
+        }
+    };
+    int busy = 0;
+    for (const Instant end = now + 20s; now < end; ++busy) {
+        const auto next = folder->step(now);
+        ASSERT_TRUE(next.has_value());
+        ASSERT_LT(busy, 1000) << "it is asked again and again while there is nothing to do";
+        now = next->more ? now : std::max(now, next->at);
+    }
+    EXPECT_THAT(events.lines, ElementsAre("b.csv: imported", "c.csv: imported"));
+    EXPECT_THAT(names_in("processing"), ElementsAre("a.csv"));
+    events.on_step = {};
+    run();
+    EXPECT_THAT(names_in("done"), ElementsAre("a.csv", "b.csv", "c.csv"));
+}
+
+TEST_F(DropFolderTest, shouldNotTakeAFileForAnotherOnesReport) {
+    settings.pattern = "*";
+    settings.settle.by = SettleBy::renaming;
+    drop("a.csv", "name\nA\n");
+    start();
+    bool changed = false;
+    events.on_step = [&](DropStep step) {
+        if (step == DropStep::hashed && !changed) {
+            changed = true; // it has to wait, and the other goes before it
+            std::ofstream{settings.folder / "processing/a.csv", std::ios::app} << "more\n";
+            drop(".part", "name\nB\n");
+            fs::rename(settings.folder / ".part", settings.folder / "a.csv.report.json");
+        }
+    };
+    run_for(5s);
+    EXPECT_THAT(events.lines, ElementsAre("a.csv.report.json: imported", "a.csv: imported"));
+    EXPECT_EQ(report_of("done/a.csv")["name"], "a.csv");
+    EXPECT_EQ(report_of("done/a.csv.report~2.json")["name"], "a.csv.report.json");
+    EXPECT_TRUE(fs::exists(settings.folder / "done/a.csv.report~2.json"));
+}
+
 TEST_F(DropFolderTest, shouldNameTheRowsThatCannotBePrinted) {
     drop("a.csv", "name,code\nA,1\nB\nC,\x01\n");
     start();
@@ -239,6 +317,7 @@ TEST_F(DropFolderTest, shouldHoldAFileThatItMayNotMove) {
     }
     start();
     drop("a.csv");
+    fs::permissions(directory, fs::perms::all);
     fs::permissions(settings.folder, fs::perms::all | fs::perms::sticky_bit);
     ASSERT_EQ(::seteuid(65534), 0);
     run_for(60s);
@@ -449,6 +528,104 @@ TEST_F(DropFolderTest, shouldFailWhenTheFolderIsRemoved) {
     EXPECT_THAT(next.error().message, HasSubstr("removed"));
 }
 
+TEST_P(AnyDropFolder, shouldFailWhenOneOfItsFoldersIsNotWhereItWas) {
+    for (const char* const inner : {"", "processing", "done", "failed"}) {
+        start();
+        run_for(1s);
+        fs::rename(settings.folder / inner / "", directory / "elsewhere");
+        now += 1min;
+        auto next = folder->step(now);
+        ASSERT_FALSE(next.has_value()) << inner;
+        EXPECT_EQ(next.error().kind, FailureKind::storage);
+        EXPECT_THAT(next.error().message, HasSubstr("removed"));
+        fs::create_directory(settings.folder / inner);
+        next = folder->step(now);
+        ASSERT_FALSE(next.has_value()) << inner;
+        EXPECT_THAT(next.error().message, HasSubstr("replaced"));
+        start();
+        drop("a.csv");
+        run();
+        EXPECT_THAT(events.lines, SizeIs(1)) << inner;
+        EXPECT_THAT(names_in(""), IsEmpty());
+        fs::remove_all(directory / "elsewhere");
+        events.lines.clear();
+    }
+}
+
+TEST_F(DropFolderTest, shouldKnowItsOwnJobWhenTheFileCouldNotBeMovedAtFirst) {
+    drop("a.csv");
+    start();
+    bool once = false;
+    events.on_step = [&](DropStep step) {
+        if (step == DropStep::reported && !once) {
+            once = true;
+            std::ofstream{settings.folder / "done/a.csv"} << "mine";
+        }
+    };
+    const auto failure = run();
+    ASSERT_TRUE(failure);
+    EXPECT_EQ(failure->kind, FailureKind::storage);
+    EXPECT_THAT(names_in("processing"), ElementsAre("a.csv"));
+    EXPECT_EQ(run(), std::nullopt);
+    EXPECT_THAT(events.lines, ElementsAre("a.csv: imported", "a.csv: imported"));
+    EXPECT_EQ(report_of("done/a~2.csv")["verdict"], "imported");
+    EXPECT_EQ(jobs(), 1U);
+}
+
+TEST_F(DropFolderTest, shouldKeepAFileUntilItsReportIsWritten) {
+    drop("a.csv", "name\n\x01\n");
+    start();
+    fs::create_directory(settings.folder / "failed/.report");
+    EXPECT_EQ(run()->kind, FailureKind::storage);
+    EXPECT_EQ(run()->kind, FailureKind::storage);
+    EXPECT_THAT(events.lines, IsEmpty());
+    EXPECT_THAT(names_in("processing"), ElementsAre("a.csv"));
+    fs::remove(settings.folder / "failed/.report");
+    EXPECT_EQ(run(), std::nullopt);
+    EXPECT_THAT(events.lines, ElementsAre("a.csv: failed"));
+    EXPECT_EQ(report_of("failed/a.csv")["verdict"], "failed");
+}
+
+TEST_F(DropFolderTest, shouldKeepAFileThatCannotBeOpenedForNow) {
+    drop("a.csv");
+    start();
+    rlimit limit{};
+    ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &limit), 0);
+    events.on_step = [&](DropStep step) {
+        const rlimit none{0, limit.rlim_max};
+        if (step == DropStep::claimed) {
+            ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &none), 0);
+        }
+    };
+    const auto failure = run();
+    ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &limit), 0);
+    ASSERT_TRUE(failure);
+    EXPECT_EQ(failure->kind, FailureKind::internal);
+    EXPECT_THAT(failure->message, HasSubstr("processing/a.csv: Too many open files"));
+    EXPECT_EQ(run(), std::nullopt);
+    EXPECT_THAT(events.lines, ElementsAre("a.csv: imported"));
+}
+
+TEST_F(DropFolderTest, shouldNotJudgeAFileThatIsBeingWrittenAnew) {
+    settings.settle.by = SettleBy::renaming;
+    drop("a.csv", "name\nA\n");
+    start();
+    bool once = false;
+    events.on_step = [&](DropStep step) {
+        if (step == DropStep::hashed && !once) {
+            once = true;
+            fs::resize_file(settings.folder / "processing/a.csv", 0);
+        }
+    };
+    run_for(1s);
+    EXPECT_THAT(events.lines, IsEmpty());
+    EXPECT_THAT(names_in("processing"), ElementsAre("a.csv"));
+    std::ofstream{settings.folder / "processing/a.csv"} << "name\nB\nC\n";
+    run_for(5s);
+    ASSERT_THAT(events.lines, ElementsAre("a.csv: imported"));
+    EXPECT_EQ(events.reports.front().records.count(), RecordCount{2});
+}
+
 TEST_F(DropFolderTest, shouldBreakOffALongFileAndTakeItUpAtTheNextStart) {
     std::string rows = "name\n";
     for (int i = 0; i < 100'000; ++i) {
@@ -489,6 +666,27 @@ TEST_F(DropFolderTest, shouldNotTakeTheMarkOfAnEarlierFileForThatOfTheNext) {
     run_for(60s);
     EXPECT_THAT(events.lines, IsEmpty());
     EXPECT_THAT(events.notes, ElementsAre("a.csv: its .done is older than its last change"));
+}
+
+/// Who drops may wait for nothing but that the name is free.
+TEST_F(DropFolderTest, shouldLeaveTheMarkOfTheNextFile) {
+    settings.settle.by = SettleBy::done_mark;
+    drop("a.csv", "name\nA\n");
+    drop("a.csv.done", "");
+    start();
+    bool next = false;
+    events.on_step = [&](DropStep step) {
+        if (step == DropStep::claimed && !next) {
+            next = true;
+            std::this_thread::sleep_for(20ms);
+            drop("a.csv", "name\nB\n");
+            drop("a.csv.done", "");
+        }
+    };
+    run_for(3s);
+    EXPECT_THAT(events.lines, ElementsAre("a.csv: imported", "a.csv: imported"));
+    EXPECT_EQ(jobs(), 2U);
+    EXPECT_THAT(names_in(""), IsEmpty());
 }
 
 } // namespace

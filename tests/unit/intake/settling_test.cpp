@@ -63,6 +63,21 @@ TEST_F(SettlingTest, shouldHoldAFileThatIsOpenForWritingHoweverQuiet) {
     EXPECT_EQ(kind(), Kind::ready);
 }
 
+TEST_F(SettlingTest, shouldHoldAnEmptyFileThatItsMakerHasNotClosed) {
+    look.size_bytes = 0;
+    file.created();
+    time += 10h;
+    EXPECT_THAT(decide().why, HasSubstr("not closed"));
+    look.size_bytes = 1; // made by a link: what was complete elsewhere has no writer here
+    EXPECT_EQ(kind(), Kind::wait);
+    look.size_bytes = 0;
+    file.closed();
+    EXPECT_EQ(kind(), Kind::wait);
+    file.created();
+    file.events_lost();
+    EXPECT_EQ(kind(), Kind::wait) << "perhaps it was closed meanwhile";
+}
+
 TEST_F(SettlingTest, shouldNotTrustTheQuietBeforeEventsWereLost) {
     decide();
     file.modified();

@@ -175,7 +175,7 @@ TEST_F(ServiceTest, shouldStandAndSayWhyWhenThePrinterCannotBeReachedAndGoOnLate
     const spool::JobId job = import(30);
     ASSERT_TRUE(service_->start(anna, job));
     ASSERT_TRUE(comes_to(job, JobPhase::stopped));
-    EXPECT_THAT(view(job).message, HasSubstr("cannot be reached"));
+    EXPECT_THAT(view(job).message, HasSubstr("Connection refused. Look whether the printer is switched on"));
     SimulatedPrinter printer{directory_ / "tape.csv", 1000, port};
     ASSERT_TRUE(service_->start(anna, job));
     ASSERT_TRUE(comes_to(job, JobPhase::finished));

@@ -182,6 +182,16 @@ TEST(PrinterHabits, shouldAppendThePrintGoCount) {
     EXPECT_EQ(printer.sm(), "^0=SM256\t0\t2\t0\t1\t3\r");
 }
 
+TEST(PrinterHabits, shouldLeaveOutTheTotalCounter) {
+    PrinterSettings settings = with_habit("no-total-counter");
+    settings.total_prints = 500;
+    Printer printer{settings};
+    printer.fill(1, 3);
+    printer.send("^0!GO\r");
+    printer.products(2);
+    EXPECT_EQ(printer.send("^0?CC\r"), "^0=CC2\t0\r");
+}
+
 TEST(PrinterHabits, shouldSetBit24OfErrors) {
     Printer printer{with_habit("error-bit-24")};
     printer.send("^0=MR1\ta\r^0=CM1\r^0!GO\r");

@@ -27,6 +27,8 @@ TEST_F(SpoolJournalTest, shouldNumberEventsOverRestarts) {
     second.id = 2;
     EXPECT_EQ(events[0], first);
     EXPECT_EQ(events[1], second);
+    EXPECT_EQ(spool.last_event().value(), 2U);
+    EXPECT_EQ(spool.last_audit().value(), 0U);
     EXPECT_THAT(spool.events(1, 10).value(), SizeIs(1));
     EXPECT_THAT(spool.events(0, 1).value(), SizeIs(1));
     EXPECT_THAT(spool.events(2, 10).value(), IsEmpty());

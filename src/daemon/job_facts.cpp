@@ -1,10 +1,9 @@
-#include "service/job_facts.hpp"
+#include "daemon/job_facts.hpp"
 
 #include <filesystem>
 
-namespace linefeed::service {
+namespace linefeed::daemon {
 
-using daemon::JobPhase;
 using spool::RecordState;
 
 spool::Ticket JobFacts::ticket_or_new() const {
@@ -81,9 +80,9 @@ std::string message_of(const JobFacts& facts, JobPhase phase) {
 
 } // namespace
 
-daemon::JobView view_of(const JobFacts& facts, std::optional<JobPhase> live) {
+JobView view_of(const JobFacts& facts, std::optional<JobPhase> live) {
     const spool::Ticket ticket = facts.ticket_or_new();
-    daemon::JobView view;
+    JobView view;
     view.id = facts.job.id;
     view.name = ticket.name;
     view.source = facts.job.spec.source.path;
@@ -108,8 +107,26 @@ daemon::JobView view_of(const JobFacts& facts, std::optional<JobPhase> live) {
     return view;
 }
 
-Result<Places> places_in(spool::Spool& spool, const std::string& printer) {
-    const auto queue = spool.queue(printer);
+Result<JobView> JobViews::view(const JobFacts& facts, std::optional<JobPhase> live) {
+    JobView view = view_of(facts, live);
+    if (!facts.ticket || !facts.ticket->place) {
+        return view;
+    }
+    const auto places = places_in(facts.printer());
+    if (!places) {
+        return places.error();
+    }
+    if (const auto found = (*places)->find(facts.job.id); found != (*places)->end()) {
+        view.place = found->second;
+    }
+    return view;
+}
+
+Result<const JobViews::Places*> JobViews::places_in(const std::string& printer) {
+    if (const auto known = queues_.find(printer); known != queues_.end()) {
+        return &known->second;
+    }
+    const auto queue = spool_.queue(printer);
     if (!queue) {
         return queue.error();
     }
@@ -117,7 +134,7 @@ Result<Places> places_in(spool::Spool& spool, const std::string& printer) {
     for (const spool::Ticket& ticket : *queue) {
         places.emplace(ticket.job, static_cast<std::uint32_t>(places.size() + 1));
     }
-    return places;
+    return &queues_.emplace(printer, std::move(places)).first->second;
 }
 
-} // namespace linefeed::service
+} // namespace linefeed::daemon

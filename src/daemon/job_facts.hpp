@@ -1,4 +1,5 @@
-// Where a job stands: put together from what the spool knows of it and whether a line is at it now.
+// Where a job stands: put together from what the spool knows of it and whether a line is at it now. The service and
+// whoever reads a spool without it see the same.
 #pragma once
 
 #include "daemon/operations.hpp"
@@ -8,7 +9,7 @@
 #include <optional>
 #include <string>
 
-namespace linefeed::service {
+namespace linefeed::daemon {
 
 /// What the spool knows of a job.
 struct JobFacts {
@@ -31,16 +32,28 @@ struct JobFacts {
 [[nodiscard]] Result<JobFacts> read_facts(spool::Spool& spool, spool::Job job);
 
 /// `live` = what its line does with it now; absent = nothing.
-[[nodiscard]] daemon::JobPhase phase_of(const JobFacts& facts, std::optional<daemon::JobPhase> live);
+[[nodiscard]] JobPhase phase_of(const JobFacts& facts, std::optional<JobPhase> live);
 
 /// Without its place in the queue.
-[[nodiscard]] daemon::JobView view_of(const JobFacts& facts, std::optional<daemon::JobPhase> live);
+[[nodiscard]] JobView view_of(const JobFacts& facts, std::optional<JobPhase> live);
 
 /// "job 12".
 [[nodiscard]] std::string name_of(spool::JobId id);
 
-/// The places in the queue of a printer, from 1.
-using Places = std::map<spool::JobId, std::uint32_t>;
-[[nodiscard]] Result<Places> places_in(spool::Spool& spool, const std::string& printer);
+/// Views of many jobs: each queue is read once. The spool must outlive it.
+class JobViews {
+public:
+    explicit JobViews(spool::Spool& spool)
+        : spool_(spool) {}
+    /// With its place in the queue.
+    [[nodiscard]] Result<JobView> view(const JobFacts& facts, std::optional<JobPhase> live = {});
 
-} // namespace linefeed::service
+private:
+    using Places = std::map<spool::JobId, std::uint32_t>; ///< in one queue, from 1
+    [[nodiscard]] Result<const Places*> places_in(const std::string& printer);
+
+    spool::Spool& spool_;
+    std::map<std::string, Places> queues_;
+};
+
+} // namespace linefeed::daemon
