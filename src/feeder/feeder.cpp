@@ -153,6 +153,7 @@ void Feeder::locate_step(Instant now, Actions& out) {
     const bool stands = status_.machine != MachineState::printing;
     if (stands) {
         note_unfinished();
+        note_restart();
     }
     const bool print_in_progress = stands && !mail_.last_print_finished;
     const bool not_flushed = phase_ == Phase::clearing && mail_.entries > 0;
@@ -163,6 +164,16 @@ void Feeder::locate_step(Instant now, Actions& out) {
     } else {
         ask(Parameter::CC, now, out);
     }
+}
+
+/// What it reports now was not in the printer when it was seen printing last: a stop has emptied the FIFO, and it has
+/// printed on behind that. A counter tells this better: a line that almost starves may print what came since.
+void Feeder::note_restart() {
+    const std::uint64_t reported = mail_.last_printed.value();
+    const std::uint64_t sent = refill_.sent_through().value() + (marker_sent_ ? std::uint64_t{1} : 0);
+    const bool left_over = !left_over_passed_ && mail_.last_printed == left_over_;
+    const bool came_since = held_through_ < reported && reported <= sent;
+    restarted_ = restarted_ || (has_granted_records() && !total_before_ && !left_over && came_since);
 }
 
 /// The printer has been stopped, and the print in progress may be broken off. Should it print on behind it, somebody
@@ -176,7 +187,19 @@ void Feeder::note_unfinished() {
 }
 
 void Feeder::on_counters(const protocol::Counters& counters, Instant now, Actions& out) {
-    facts_.total_prints = counters.total;
+    if (phase_ == Phase::ended) {
+        return;
+    }
+    if (counters.total) {
+        counted(counters.total, now, out);
+    } else {
+        counters_lost(now, out); // with a TAB less it is not in its place
+    }
+}
+
+/// `total` is absent if the printer does not tell it.
+void Feeder::counted(std::optional<std::uint32_t> total, Instant now, Actions& out) {
+    facts_.total_prints = total;
     counters_outstanding_ = std::max(0, counters_outstanding_ - 1);
     if (polls()) {
         print_counters(now, out);
@@ -275,7 +298,7 @@ void Feeder::counters_lost(Instant now, Actions& out) {
         --counters_outstanding_;
         ask(Parameter::CC, now, out);
     } else {
-        on_counters({}, now, out);
+        counted(std::nullopt, now, out);
     }
 }
 

@@ -151,6 +151,7 @@ private:
     void forget_oldest_mail();
     [[nodiscard]] bool asks_version_again(Instant now, Actions& out);
     void time_identity(Instant now);
+    void counted(std::optional<std::uint32_t> total, Instant now, Actions& out);
     void counters_lost(Instant now, Actions& out);
     [[nodiscard]] bool waits_for_mail() const;
     [[nodiscard]] bool waits_for_status() const;
@@ -202,7 +203,8 @@ private:
     };
     [[nodiscard]] Report judge_report();
     void note_unfinished();
-    void watch_for_missing();
+    void note_restart();
+    void watch_for_missing(Instant now, Actions& out);
     void doubt_number();
     [[nodiscard]] bool take_report(Instant now, Actions& out);
     void confirm_reported(Actions& out);
@@ -296,6 +298,10 @@ private:
     bool left_over_passed_ = false; ///< the printer has reported another number since
     /// So many more records than were sent are in the printer by the last answer; absent: it fitted.
     std::optional<std::uint64_t> odd_excess_;
+    /// The last number that can come from what was in the printer by the last answer while the stop point stood.
+    std::uint64_t held_through_ = 0;
+    bool missing_ = false;             ///< records, by that answer
+    RecordNumber said_before_;         ///< surely printed by the answer before, taken by itself
     std::uint64_t excess_of_fill_ = 0; ///< 1: its firmware counts the loaded record, too
     std::optional<std::uint32_t> total_before_;
     StopPoint stop_point_ = StopPoint::unset;

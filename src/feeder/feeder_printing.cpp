@@ -74,8 +74,8 @@ bool Feeder::follow(Instant now, Actions& out) {
     if (!take_report(now, out)) {
         return false;
     }
-    watch_for_missing();
     pacing_.printed(refill_.printed_through() - refill_.range().first().previous(), now);
+    watch_for_missing(now, out);
     if (phase_ == Phase::printing) {
         stop_move_ == StopMove::none ? insist_on_stop_point(out) : follow_stop_point(now, out);
     }
@@ -140,7 +140,10 @@ bool Feeder::take_report(Instant now, Actions& out) {
     if (pacing_.leaps(refill_.printed_through() - refill_.range().first().previous(), now)) {
         doubt_number(); // another client may have flushed the FIFO: no stop point shows that
     }
-    reported_through_ = finished ? printed : std::max(reported_through_, printed.previous());
+    const RecordNumber said = finished ? printed : printed.previous();
+    // Without a counter to bear it out, one damaged answer must not prove anything.
+    reported_through_ = std::max(reported_through_, total_before_ ? said : std::min(said, said_before_));
+    said_before_ = said;
     confirm_reported(out);
     return true;
 }
@@ -158,11 +161,17 @@ void Feeder::confirm_reported(Actions& out) {
 }
 
 /// Fewer records are in the printer than it surely received: a serial line has lost some, or another client has flushed
-/// the FIFO.
-void Feeder::watch_for_missing() {
+/// the FIFO. The counter will tell whether it prints on behind them; without one it must not come so far.
+void Feeder::watch_for_missing(Instant now, Actions& out) {
     const std::uint64_t held = refill_.printed_through().value() + mail_.entries + std::uint64_t{1};
-    if (held < surely_received_.value()) {
+    const bool missing_before = missing_;
+    held_through_ = std::min<std::uint64_t>(held, refill_.sent_through().value() + (marker_sent_ ? 1 : 0));
+    missing_ = held < surely_received_.value();
+    if (missing_) {
         doubt_number();
+    }
+    if (missing_ && missing_before && !total_before_) { // not just a damaged answer
+        begin_stop(OutcomeCode::stopped_at_printer, now, out);
     }
 }
 
@@ -229,6 +238,7 @@ bool Feeder::stop_point_vanished(Instant now, Actions& out) {
         return false;
     }
     note_unfinished();
+    note_restart();
     if (!suspected_since_) {
         suspected_since_ = now;
         ask(Parameter::RS, now, out);

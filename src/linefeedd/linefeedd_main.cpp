@@ -68,6 +68,18 @@ void reload(linefeed::service::Service& service, linefeed::api::Server& server, 
     linefeed::daemon::notify_ready("running");
 }
 
+/// Says once that a thread does not get on, before systemd ends the service.
+void look(Watchdog& watchdog, linefeed::daemon::Log& log, int& stalled_looks) {
+    constexpr int patience = 2;
+    const std::vector<std::string> stalled = watchdog.look();
+    stalled_looks = stalled.empty() ? 0 : stalled_looks + 1;
+    if (stalled_looks == patience) {
+        for (const std::string& name : stalled) {
+            log.write(LogComponent::service, LogLevel::error, "the " + name + " does not get on");
+        }
+    }
+}
+
 /// Until SIGTERM; SIGHUP reads the settings again.
 void watch(linefeed::service::Service& service, linefeed::api::Server& server, linefeed::daemon::Log& log,
            const Signals& signals) {
@@ -76,6 +88,7 @@ void watch(linefeed::service::Service& service, linefeed::api::Server& server, l
     Watchdog watchdog{service.hearts()};
     const auto look_interval = Watchdog::look_interval();
     Clock::time_point ticked = Clock::now();
+    int stalled_looks = 0;
     while (true) {
         switch (signals.wait(look_interval.value_or(std::chrono::seconds{1}))) {
         case SIGTERM:
@@ -88,7 +101,7 @@ void watch(linefeed::service::Service& service, linefeed::api::Server& server, l
             break;
         }
         if (look_interval) {
-            static_cast<void>(watchdog.look());
+            look(watchdog, log, stalled_looks);
         }
         if (Clock::now() - ticked >= tick_interval) {
             service.tick();
@@ -112,6 +125,7 @@ ExitCode serve(const Options& options, const linefeed::config::Settings& setting
         log.write(LogComponent::api, LogLevel::error, started.error().message);
         return ExitCode::other;
     }
+    service.start();
     linefeed::daemon::notify_ready("running");
     watch(service, server, log, signals);
     linefeed::daemon::notify_stopping("stopping the lines");

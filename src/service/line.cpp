@@ -46,6 +46,7 @@ Result<void> Line::start(spool::JobId job) {
                                (active_ ? " is at " + name_of(*active_) + ": stop it first" : " is being taken away")};
         }
         active_ = job;
+        ++orders_;
         begun_ = false;
         stop_requested_ = false;
         supply_low_ = false;
@@ -65,7 +66,8 @@ void Line::request_stop() {
 
 std::optional<Ending> Line::wait_until_idle() {
     std::unique_lock lock{mutex_};
-    changed_.wait(lock, [this] { return !active_; });
+    const std::uint64_t order = orders_;
+    changed_.wait(lock, [&] { return !active_ || orders_ != order; });
     return last_ending_;
 }
 
@@ -82,9 +84,12 @@ void Line::serve() {
         print(job);
         lock.lock();
         active_.reset();
+        const bool stopped = stop_requested_; // at its very end, perhaps: the next job does not follow then either
         lock.unlock();
         changed_.notify_all();
-        services_.on_idle(printer_);
+        if (!stopped) {
+            services_.on_idle(printer_);
+        }
         lock.lock();
     }
 }

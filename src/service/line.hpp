@@ -36,7 +36,7 @@ struct LineServices {
     spool::Spool& spool; ///< for JobRun; everything else goes through `access`
     SpoolAccess& access;
     EventLog& events;
-    /// The line has nothing to do any more; called on its thread.
+    /// The line has nothing to do any more, and nobody has stopped it; called on its thread.
     std::function<void(const std::string& printer)> on_idle;
 };
 
@@ -63,7 +63,7 @@ public:
     [[nodiscard]] Result<void> start(spool::JobId job);
     /// Begins to stop what is armed or printed.
     void request_stop();
-    /// Waits until nothing is armed or printed. How the last job ended, if there was one.
+    /// Waits until what is armed or printed now is not any more. How the last job ended, if there was one.
     [[nodiscard]] std::optional<Ending> wait_until_idle();
     /// The job that is armed or printed, and where it stands.
     struct Active {
@@ -117,6 +117,7 @@ private:
     mutable std::condition_variable changed_;
     SharedSettings settings_;
     std::optional<spool::JobId> active_; ///< ordered, or under way
+    std::uint64_t orders_ = 0;           ///< so many so far
     bool begun_ = false;                 ///< the thread has taken the order
     bool checking_ = false;              ///< preflight
     bool stop_requested_ = false;

@@ -64,7 +64,7 @@ Result<void> Line::hold_panel(std::optional<Duration> time) {
         panel_held_ = false;
         return {};
     }
-    if (!panel_) {
+    if (!panel_ || !panel_->held()) { // perhaps it has another address since
         const auto client = client_settings();
         if (!client) {
             return client.error();

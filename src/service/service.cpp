@@ -31,13 +31,16 @@ Result<std::unique_ptr<Service>> Service::open(ServiceOptions options) {
     if (auto recovered = service->recover(); !recovered) {
         return recovered.error();
     }
-    service->event(event_kind::service_started, {}, {}, "linefeedd " + service->version_ + " has started");
     service->open_lines();
-    service->open_folders();
-    for (const LinePtr& line : service->lines()) {
-        service->look_for_work(line->printer());
-    }
     return service;
+}
+
+void Service::start() {
+    event(event_kind::service_started, {}, {}, "linefeedd " + version_ + " has started");
+    open_folders();
+    for (const LinePtr& line : lines()) {
+        look_for_work(line->printer());
+    }
 }
 
 Service::~Service() {
@@ -98,6 +101,7 @@ void Service::shut_down() {
             return;
         }
     }
+    ending_ = true;
     event(event_kind::service_stopping, {}, {}, "linefeedd ends");
     std::vector<FolderPtr> folders;
     {

@@ -15,6 +15,7 @@
 #include "service/spool_access.hpp"
 #include "spool/json_text.hpp"
 
+#include <atomic>
 #include <functional>
 #include <map>
 #include <memory>
@@ -34,12 +35,14 @@ struct ServiceOptions {
     std::string version;
 };
 
-/// Flow: open(), any of the operations, shut_down(). All callers must be gone before it is destroyed.
+/// Flow: open(), start(), any of the operations from open() on, shut_down(). All callers must be gone before it is
+/// destroyed.
 class Service final : public daemon::Operations {
 public:
-    /// Opens the spool, says where each job stands, and begins to look after printers and folders. FailureKind::storage
-    /// if the spool cannot be used.
+    /// Opens the spool and finds out where each job stands. FailureKind::storage if the spool cannot be used.
     [[nodiscard]] static Result<std::unique_ptr<Service>> open(ServiceOptions options);
+    /// From now on things may happen by themselves: folders are looked after, and queues start what they may.
+    void start();
     ~Service() override;
     Service(const Service&) = delete;
     Service& operator=(const Service&) = delete;
@@ -170,7 +173,8 @@ private:
 
     /// One operation at a time decides about jobs and queues; none waits for a printer meanwhile.
     std::mutex orders_;
-    bool closing_ = false; ///< by orders_
+    bool closing_ = false;            ///< by orders_
+    std::atomic<bool> ending_{false}; ///< the same, for imports
 
     mutable std::mutex parts_mutex_; ///< for what follows
     SharedSettings settings_;

@@ -79,11 +79,13 @@ spool::Ticket ticket_for(const daemon::Caller& caller, const daemon::ImportReque
     return ticket;
 }
 
-Result<ImportAnswer> import_file(const std::filesystem::path& file, const intake::Layout& layout, Batches& batches) {
+Result<ImportAnswer> import_file(const std::filesystem::path& file, const intake::Layout& layout, Batches& batches,
+                                 const std::atomic<bool>& ending) {
     auto opened = intake::open_with_layout(file, layout);
     if (!opened) {
         return opened.error();
     }
+    opened->options.on_progress = [&ending](const intake::ImportReport&, double) { return !ending; };
     const auto spec = spec_of(file, layout);
     if (!spec) {
         return spec.error();
@@ -124,11 +126,8 @@ Result<ImportAnswer> Service::import(const daemon::Caller& caller, const daemon:
                       .add_json("autostart", request.autostart ? "true" : "false")
                       .add_json("again", request.again ? "true" : "false")};
     auto answer = audited(caller, act, [&]() -> Result<ImportAnswer> {
-        {
-            const std::lock_guard lock{orders_};
-            if (closing_) {
-                return Failure{FailureKind::stopped, "the service is ending"};
-            }
+        if (ending_) {
+            return Failure{FailureKind::stopped, "the service is ending"};
         }
         const auto layout = layout_for(request, *settings());
         if (!layout) {
@@ -138,7 +137,7 @@ Result<ImportAnswer> Service::import(const daemon::Caller& caller, const daemon:
         if (request.again) {
             batches.allow_again();
         }
-        return import_file(request.file, *layout, batches);
+        return import_file(request.file, *layout, batches, ending_);
     });
     if (!answer) {
         ++counts_.failed;

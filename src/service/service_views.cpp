@@ -34,11 +34,7 @@ daemon::ServiceStatus Service::status() {
     status.checks.push_back(finding("storage", writable.has_value(),
                                     writable ? "the spool can be written" : writable.error().message,
                                     "see to the disk, then start linefeedd again"));
-    bool closing = false;
-    {
-        const std::lock_guard lock{orders_};
-        closing = closing_;
-    }
+    const bool closing = ending_;
     status.checks.push_back(finding("service", !closing, closing ? "the service is ending" : "running", "wait"));
     status.ready = writable.has_value() && !closing;
     for (const daemon::FolderView& folder : folders()) {

@@ -104,7 +104,7 @@ bool Session::take_answer(const protocol::Message& message, Instant now, Actions
         return asked;
     }
     if (const auto* counters = std::get_if<protocol::Counters>(&message)) {
-        const bool asked = answered(Parameter::CC);
+        const bool asked = counters->product && answered(Parameter::CC); // without: an echo of what somebody sets
         if (asked) {
             feeder_.on_counters(*counters, now, actions);
         }

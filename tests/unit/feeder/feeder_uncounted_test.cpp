@@ -39,7 +39,9 @@ FeederPlan takeover_plan() {
 TEST(FeederUncounted, shouldConfirmWhatIsReportedWhileTheStopPointStands) {
     Story story = printing();
     story.sm(2, 101, 110);
-    story.expect("printed through 101; =MR 105-105");
+    story.expect("=MR 105-105"); // one answer may be damaged
+    story.sm(3, 101, 110);
+    story.expect("printed through 101");
     story.stop();
     story.expect("!ST; ?RS");
     story.judge(1, 103);
@@ -66,6 +68,58 @@ TEST(FeederUncounted, shouldTakeAStopPointThatVanishesBehindTheStartForAStop) {
     story.expect("!ST; ?RS");
     story.judge(0, 104);
     EXPECT_NE(story.take().find("in doubt 101-104"), std::string::npos);
+}
+
+TEST(FeederUncounted, shouldDoubtWhatIsPrintedBehindAStop) {
+    Story story = printing();
+    story.sm(2, 101, 110); // 102-104 are in the printer, and 105 is sent
+    story.sm(0, 101, 0);   // stopped: they are gone
+    story.take();
+    story.sm(0, 105, 0); // started again: 105 came too late to be thrown away
+    story.judge(0, 105);
+    EXPECT_NE(story.take().find("in doubt 101-105"), std::string::npos);
+
+    for (const std::uint32_t number : {104U, 105U}) { // stopped, and perhaps started again, between two answers
+        story = printing();
+        story.sm(2, 101, 110);
+        story.take();
+        story.judge(0, number);
+        const bool all_were_in_the_printer = story.take().find("in doubt none, unused 105-105") != std::string::npos;
+        EXPECT_EQ(all_were_in_the_printer, number == 104);
+    }
+}
+
+TEST(FeederUncounted, shouldStopWhenARecordIsMissingInThePrinter) {
+    Story story = printing();
+    story.sm(2, 101, 110);
+    story.expect("=MR 105-105");
+    for (int answers = 0; answers < 6 && story.phase() == Phase::printing; ++answers) {
+        story.take();
+        story.wait(milliseconds{40});
+        story.sm(2, 101, 110); // it holds 104 at most
+    }
+    EXPECT_NE(story.take().find("!ST; ?RS"), std::string::npos);
+    story.judge(0, 104);
+    EXPECT_NE(story.take().find("in doubt none, unused 105-105"), std::string::npos) << "it stops before the gap";
+}
+
+TEST(FeederUncounted, shouldAskAgainForACounterThatOnlyGotDamaged) {
+    Story story;
+    story.identify();
+    story.sm(0, 77, 0);
+    story.sm(0, 77, 0);
+    story.take();
+    story.feeder.on_counters({.product = 0, .stop_after = 1000, .total = {}}, story.now, story.actions);
+    story.expect("?CC");
+    story.cc(1000);
+    EXPECT_EQ(story.phase(), Phase::granting);
+    EXPECT_EQ(std::get<BeginRun>(story.actions[0]).printer.total_prints, 1000U);
+
+    story = reach(Phase::printing);
+    story.sm(0, 104, 110);
+    story.take();
+    story.cc(std::nullopt); // proves nothing
+    story.expect("");
 }
 
 TEST(FeederUncounted, shouldDoubtWhatIsPrintedBetweenTheLooks) {

@@ -71,8 +71,16 @@ public:
         feeder.on_mail_status(
             {reported_depth, entries, RecordNumber{last_printed}, RecordNumber{stop_at}, finished, {}}, now, actions);
     }
+    /// Without a total as often as it is asked for.
     void cc(std::optional<std::uint32_t> total) {
+        const auto asked_again = [this] {
+            return !actions.empty() && actions[actions.size() - 1] == Action{Inquire{protocol::Parameter::CC}};
+        };
         feeder.on_counters({.product = {}, .stop_after = {}, .total = total}, now, actions);
+        while (!total && asked_again()) {
+            actions.erase(actions.size() - 1);
+            feeder.on_counters({.product = {}, .stop_after = {}, .total = total}, now, actions);
+        }
     }
     void vs(const std::string& serial) {
         protocol::VersionInfo version;

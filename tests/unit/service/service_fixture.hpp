@@ -54,6 +54,7 @@ protected:
         auto service = Service::open({*settings, load, [](const spool::Event&) {}, "test"});
         ASSERT_TRUE(service) << service.error().message;
         service_ = std::move(*service);
+        service_->start();
     }
 
     /// A file of `count` serial numbers from `first` on.

@@ -454,7 +454,8 @@ TEST(Session, shouldSendABlankEndMarkerWithTheFieldsOfTheRecords) {
 
 TEST(Session, shouldSpeakOfATakeover) {
     feeder::FeederPlan plan;
-    plan.open = feeder::OpenRun{RecordNumber{1}, RecordNumber{0}, RecordNumber{100}, "", {}, RecordNumber{0}};
+    plan.open = feeder::OpenRun{RecordNumber{1}, RecordNumber{0},  RecordNumber{100}, "", {},
+                                RecordNumber{0}, RecordNumber{100}};
     plan.take_over = true;
     Conversation host{{}, plan};
     host.connect();
