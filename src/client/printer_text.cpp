@@ -15,10 +15,10 @@ Cell state_of(const Json& printer) {
     if (!member(printer, "error").is_null()) {
         return {phase == "idle" ? "error" : phase + ", error", Colour::bad};
     }
-    if (link != "up") {
-        return {link == "down" ? "not reachable" : link, phase == "idle" ? Colour::warning : Colour::bad};
+    if (phase == "idle") { // between jobs there is no link
+        return {phase};
     }
-    return {phase, phase == "idle" ? Colour::none : Colour::good};
+    return link == "up" ? Cell{phase, Colour::good} : Cell{phase + ", no link", Colour::bad};
 }
 
 std::string rate_of(const Json& figures) {

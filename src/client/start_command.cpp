@@ -28,27 +28,25 @@ Result<Json> show_job_now(Service& service, std::int64_t job, bool json) {
     return now;
 }
 
-/// Nothing was printed, because the printer could not be reached.
-bool never_reached(Service& service, const Json& before, const Json& after) {
-    if (text(after, "phase") != "stopped" || number(after, "printed") != number(before, "printed") ||
-        number(after, "open") > 0) {
-        return false;
-    }
-    const auto printer = service.get(printer_path(text(after, "printer")));
-    return printer && text(*printer, "link") != "up";
+/// When a printer was heard last, ns; absent = never, or nobody knows.
+std::optional<std::int64_t> last_heard(Service& service, const std::string& printer) {
+    const auto view = service.get(printer_path(printer));
+    return view ? whole(*view, "heard_ns") : std::nullopt;
 }
 
-Result<ExitCode> follow(Service& service, std::int64_t job, bool json) {
-    const auto before = service.get(job_path(job));
-    if (!before) {
-        return before.error();
-    }
+/// The same of the printer of a job.
+std::optional<std::int64_t> last_heard_for(Service& service, std::int64_t job) {
+    const auto view = service.get(job_path(job));
+    return view ? last_heard(service, text(*view, "printer")) : std::nullopt;
+}
+
+Result<ExitCode> follow(Service& service, std::int64_t job, std::optional<std::int64_t> heard_before, bool json) {
     const auto end = wait_for_job(service, job, json);
     if (!end) {
         return end.error();
     }
+    const std::string printer = text(end->job, "printer");
     if (end->interrupted) {
-        const std::string printer = text(end->job, "printer");
         say("job " + std::to_string(job) + " goes on without you looking: linefeed job " + std::to_string(job) +
             " shows it, linefeed stop " + printer + " stops it");
         return ExitCode::other;
@@ -58,26 +56,47 @@ Result<ExitCode> follow(Service& service, std::int64_t job, bool json) {
     } else {
         show(job_line(end->job) + '\n');
     }
-    return never_reached(service, *before, end->job) ? ExitCode::unreachable
-                                                     : exit_code_of_phase(text(end->job, "phase"));
+    const ExitCode code = exit_code_of_phase(text(end->job, "phase"));
+    const bool never_reached = code == ExitCode::stopped && last_heard(service, printer) == heard_before;
+    return never_reached ? ExitCode::unreachable : code;
 }
 
-/// What comes of a request to start: the job's state, or why it does not start.
-Result<ExitCode> after_start(Service& service, const Result<Json>& started, std::optional<std::int64_t> job,
-                             const CommonOptions& common, bool wait) {
+/// The records in doubt, if they are what keeps a job from starting.
+void show_doubt(Service& service, const Failure& failure, std::optional<std::int64_t> job, bool json) {
+    if (failure.kind != FailureKind::in_doubt || !job || json) {
+        return;
+    }
+    if (const auto doubt = service.get(job_path(*job, "/doubt"))) {
+        show(doubt_text(*doubt, *job, stdout_screen()));
+    }
+}
+
+struct StartRequest {
+    std::string target;
+    Json body{};
+    std::optional<std::int64_t> job{}; ///< absent = the printer's next
+    std::string printer{};             ///< empty = the job's
+    bool wait = false;
+    bool json = false;
+};
+
+/// Starts it, and shows the job as it is then, or as it is at last.
+Result<ExitCode> start(Service& service, const StartRequest& request) {
+    std::optional<std::int64_t> heard_before;
+    if (request.wait) {
+        heard_before =
+            request.printer.empty() ? last_heard_for(service, *request.job) : last_heard(service, request.printer);
+    }
+    const auto started = service.post(request.target, request.body);
     if (!started) {
-        if (started.error().kind == FailureKind::in_doubt && job && !common.json) {
-            if (const auto doubt = service.get(job_path(*job, "/doubt"))) {
-                show(doubt_text(*doubt, *job, stdout_screen()));
-            }
-        }
+        show_doubt(service, started.error(), request.job, request.json);
         return started.error();
     }
     const std::int64_t id = number(*started, "job");
-    if (wait) {
-        return follow(service, id, common.json);
+    if (request.wait) {
+        return follow(service, id, heard_before, request.json);
     }
-    const auto now = show_job_now(service, id, common.json);
+    const auto now = show_job_now(service, id, request.json);
     return now ? Result<ExitCode>{ExitCode::done} : now.error();
 }
 
@@ -153,10 +172,16 @@ Json settle_request(const OperatorWord& word) {
 
 ExitCode run_start(const StartOptions& options) {
     return run_with_service(options.common, [&](Service& service) {
-        const Json body = options.job ? Json{{"job", *options.job}} : Json(nullptr);
-        const auto started = options.printer.empty() ? service.post(job_path(*options.job, "/start"))
-                                                     : service.post(printer_path(options.printer, "/start"), body);
-        return after_start(service, started, options.job, options.common, options.wait);
+        StartRequest request{.target = options.printer.empty() ? job_path(*options.job, "/start")
+                                                               : printer_path(options.printer, "/start"),
+                             .job = options.job,
+                             .printer = options.printer,
+                             .wait = options.wait,
+                             .json = options.common.json};
+        if (!options.printer.empty() && options.job) {
+            request.body = {{"job", *options.job}};
+        }
+        return start(service, request);
     });
 }
 
@@ -167,8 +192,10 @@ ExitCode run_resume(const ResumeOptions& options) {
                 return settled.error();
             }
         }
-        const auto started = service.post(job_path(options.job, "/resume"));
-        return after_start(service, started, options.job, options.common, options.wait);
+        return start(service, {.target = job_path(options.job, "/resume"),
+                               .job = options.job,
+                               .wait = options.wait,
+                               .json = options.common.json});
     });
 }
 

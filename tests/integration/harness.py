@@ -352,6 +352,7 @@ def rows(records):
     return [[text] for _, text in records]
 
 
+HANGUP = signal.SIGHUP
 INTERRUPT = signal.SIGINT
 TERMINATE = signal.SIGTERM
 

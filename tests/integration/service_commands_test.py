@@ -215,7 +215,8 @@ class ServiceCommands(ServiceTest):
         preflight = self.linefeed("printer", "line1", "preflight", "-o", "json")
         self.assertEqual(preflight.code, 0 if preflight.json()["ok"] else 4, str(preflight))
         self.assert_code(0, self.linefeed("printer", "line1", "preflight"))
-        self.assertTrue(any("RS" in frame["text"] for frame in self.done("printer", "line1", "frames", "-o", "json").json()))
+        self.assert_code(0, self.linefeed("start", self.imported(harness.names(5)), "--wait"))
+        self.assertTrue(any("=MR" in frame["text"] for frame in self.done("printer", "line1", "frames", "-o", "json").json()))
         self.assertIn("->", self.done("printer", "line1", "frames").out)
         self.refused(2, "printer", "line1", "acknowledge", 10202)
         self.refused(2, "printer", "line1", "acknowledge", words=("ERROR",))
@@ -294,7 +295,9 @@ class ServiceCommands(ServiceTest):
         (self.directory / "tokens").chmod(0o600)
         (self.directory / "token").write_text(made["token"] + "\n", encoding="utf-8")
         self.configure(more=", tokens_file: tokens")
-        self.done("reload")
+        self.service.send_signal(harness.HANGUP)
+        while "service.reloaded" not in self.done("events").out:
+            time.sleep(0.05)
         with_token = ["--token-file", str(self.directory / "token")]
         self.assert_code(0, harness.Job(changing + with_token).wait())
         file = self.write_csv([["über TCP"]])
@@ -331,7 +334,7 @@ class ServiceTrouble(ServiceTest):
                 (("start", "--printer", "line9"), ("line9",)), (("stop", "line9"), ("line9",)), (("printer", "line9"), ("line9",)),
                 (("queue", number, "line9"), ("line9",)), (("resume", 99), ("99",)), (("cancel", 99, "--yes"), ("99",)),
                 (("jobs", "--phase", "done"), ("--phase",)), (("jobs", "--limit", "0"), ("--limit",)), (("ledger", 99), ("99",)),
-                (("ledger", number, "--records", "x"), ("N-M",)), (("settle", number, "--printed", "x"), ("x",)),
+                (("ledger", number, "--records", "x"), ("N-M",)), (("settle", number, "--printed", "1"), ("no record of job",)),
                 (("settle", number, "--printed", "1", "--last-printed", "1"), ("exclude each other",)),
                 (("reprint", number, "--records", "9-7", "--reason", "x", "--yes"), ("9-7",)),
                 (("reprint", number, "--records", "1", "--reason", " ", "--yes"), ("--reason",)),
@@ -379,6 +382,17 @@ class ServiceTrouble(ServiceTest):
         number = self.imported(harness.names(10))
         self.link.close()
         self.assert_code(3, self.linefeed("start", number, "--wait"))
+
+    def test_a_start_that_the_printer_does_not_allow_is_stopped(self):
+        self.printer = self.simulator("--cover-open")
+        self.link = self.proxy(self.printer)
+        self.configure()
+        self.start_service()
+        number = self.imported(harness.names(10))
+        result = self.linefeed("start", number, "--wait")
+        self.assert_code(4, result)
+        self.assertIn("cover", result.out)
+        self.assert_code(4, self.linefeed("printer", "line1", "preflight"))
 
     def test_records_in_doubt_wait_for_a_word(self):
         self.printer = self.simulator("--rate", 50, "--print-ms", 9, "--habit", "abort-print-on-stop", "--stop-at-print", 20)

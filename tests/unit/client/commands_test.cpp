@@ -151,7 +151,10 @@ TEST_F(Commands, shouldWaitUntilTheJobStands) {
         other.answer("GET /api/v1/jobs/12", job_json(12, "arming"));
         other.answer("GET /api/v1/jobs/12", job_json(12, "printing", 500));
         other.answer("GET /api/v1/jobs/12", job_json(12, phase, 700));
-        other.answer("GET /api/v1/printers/line1", printer_json("line1"));
+        Json printer = printer_json("line1");
+        other.answer("GET /api/v1/printers/line1", printer);
+        printer["heard_ns"] = 1795376750123000001;
+        other.answer("GET /api/v1/printers/line1", printer);
         const Said said = run(run_start, StartOptions{{{other.socket(), "", ""}, false}, 12, "", true});
         EXPECT_EQ(said.code, code) << phase << said.err;
         EXPECT_THAT(said.out, HasSubstr("700 of 1000")) << phase;
@@ -159,25 +162,32 @@ TEST_F(Commands, shouldWaitUntilTheJobStands) {
 }
 
 TEST_F(Commands, shouldTellAPrinterThatWasNeverReachedFromAJobThatStopped) {
-    service.answer("POST /api/v1/jobs/12/start", {{"job", 12}}, 202);
-    answer_job(job_json(12, "arming", 300));
-    answer_job(job_json(12, "stopped", 300));
-    Json away = printer_json("line1");
-    away["link"] = "down";
-    service.answer("GET /api/v1/printers/line1", away);
-    EXPECT_EQ(run(run_start, start_of(12, true)).code, ExitCode::unreachable);
+    for (const auto& [heard_later, code] : {std::pair{false, ExitCode::unreachable}, {true, ExitCode::stopped}}) {
+        CannedService other;
+        other.answer("POST /api/v1/jobs/12/start", {{"job", 12}}, 202);
+        other.answer("GET /api/v1/jobs/12", job_json(12, "queued", 300));
+        other.answer("GET /api/v1/jobs/12", job_json(12, "stopped", 300));
+        Json printer = printer_json("line1");
+        other.answer("GET /api/v1/printers/line1", printer);
+        printer["heard_ns"] = printer["heard_ns"].get<std::int64_t>() + (heard_later ? 1 : 0);
+        other.answer("GET /api/v1/printers/line1", printer);
+        EXPECT_EQ(run(run_start, StartOptions{{{other.socket(), "", ""}, false}, 12, "", true}).code, code);
+    }
 }
 
 TEST_F(Commands, shouldGoOnWaitingWhenTheServiceIsAwayForAMoment) {
     service.answer("POST /api/v1/jobs/12/start", {{"job", 12}}, 202);
+    answer_job(job_json(12, "queued"));
     answer_job(job_json(12, "arming"));
     for (int i = 0; i < 2; ++i) { // the question is asked twice before the connection counts as lost
         service.hang_up("GET /api/v1/jobs/12");
     }
-    answer_job(job_json(12, "stopped", 10));
+    answer_job(job_json(12, "finished", 1000));
     service.answer("GET /api/v1/printers/line1", printer_json("line1"));
     const Said said = run(run_start, start_of(12, true));
-    EXPECT_EQ(said.code, ExitCode::stopped);
+    EXPECT_EQ(said.code, ExitCode::done);
+    EXPECT_THAT(said.err, HasSubstr("waiting for it"));
+    EXPECT_THAT(said.err, HasSubstr("there again"));
 }
 
 TEST_F(Commands, shouldSettleBeforeResuming) {

@@ -76,13 +76,18 @@ TEST_F(Texts, shouldListPrintersWithWhatIsWrongBelow) {
     broken["error"] = {
         {"code", 10202}, {"raw", 1}, {"words", "head 2"}, {"meaning", "cover open"}, {"advice", "close it"}};
     broken["warnings"] = {"data for 3 min"};
-    Json away = printer_json("line3");
-    away["link"] = "down";
-    EXPECT_EQ(printers_text({printing_printer(), broken, away}, paper),
-              "PRINTER  STATE          JOB  QUEUE   RATE        FIFO  DATA LEFT  ADDRESS\n"
-              "line1    printing        12      2  812/s  243 of 256    1:02:03  tcp://192.168.1.20:3000\n"
-              "line2    error                                                    tcp://192.168.1.20:3000\n"
-              "line3    not reachable                                            tcp://192.168.1.20:3000\n"
+    Json lost = printing_printer();
+    lost["name"] = "line3";
+    lost["link"] = "down";
+    lost["figures"] = nullptr;
+    Json idle = printer_json("line4");
+    idle["link"] = "down"; // as it is between jobs
+    EXPECT_EQ(printers_text({printing_printer(), broken, lost, idle}, paper),
+              "PRINTER  STATE              JOB  QUEUE   RATE        FIFO  DATA LEFT  ADDRESS\n"
+              "line1    printing            12      2  812/s  243 of 256    1:02:03  tcp://192.168.1.20:3000\n"
+              "line2    error                                                        tcp://192.168.1.20:3000\n"
+              "line3    printing, no link   12      2                                tcp://192.168.1.20:3000\n"
+              "line4    idle                                                         tcp://192.168.1.20:3000\n"
               "line2: error 10202: head 2; cover open; close it\n"
               "line2: data for 3 min\n");
 }
