@@ -245,7 +245,8 @@ Result<bool> Spool::State::remove_step(JobId id) {
     if (!transaction) {
         return transaction.error();
     }
-    auto mark = database->prepare("UPDATE jobs SET state = 'importing' WHERE id = ?1 AND state <> 'importing'");
+    auto mark = database->prepare(
+        "UPDATE jobs SET state = 'importing', content_sha256 = '' WHERE id = ?1 AND content_sha256 <> ''");
     auto pages = database->prepare(
         "DELETE FROM pages WHERE id IN (SELECT id FROM pages WHERE job = ?1 ORDER BY first LIMIT 256)");
     auto row = database->prepare("DELETE FROM jobs WHERE id = ?1");

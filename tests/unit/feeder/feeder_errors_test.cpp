@@ -35,7 +35,7 @@ TEST(FeederErrors, shouldStopTheLineForANumberThatStopsItAndTakeDownTheTruth) {
     story.expect("!ST; ?RS");
     story.judge(2, 102, true, 1002, raw_error(10202, warning));
     const std::string told = story.take();
-    EXPECT_NE(told.find("settle this run: printed 101-102"), std::string::npos) << told;
+    EXPECT_NE(told.find("settle this run so far: printed 101-102"), std::string::npos) << told;
     EXPECT_NE(told.find("end: printer_error"), std::string::npos) << told;
     EXPECT_EQ(told.find("!EQ"), std::string::npos) << told;
 }

@@ -1,0 +1,104 @@
+#include "linefeedd/serve.hpp"
+
+#include "api/server.hpp"
+#include "daemon/log.hpp"
+#include "daemon/service_manager.hpp"
+#include "service/event_logging.hpp"
+#include "service/service.hpp"
+
+#include <chrono>
+#include <unistd.h>
+
+namespace linefeed::linefeedd {
+
+using config::LogComponent;
+using config::LogLevel;
+using daemon::Watchdog;
+
+namespace {
+
+/// The settings again: those of the service, and where they were taken, of what stands around it.
+void reload(service::Service& service, api::Server& server, daemon::Log& log) {
+    daemon::notify_reloading();
+    if (service.reload({"linefeedd (SIGHUP)"})) { // an event tells what came of it
+        const auto settings = service.settings();
+        log.set_levels(settings->logging);
+        if (const auto taken = server.reload(settings->http); !taken) {
+            log.write(LogComponent::api, LogLevel::error, "the API goes on as it was: " + taken.error().message);
+        }
+    }
+    daemon::notify_ready("running");
+}
+
+/// Says once that a thread does not get on, before systemd ends the service.
+void look(Watchdog& watchdog, daemon::Log& log, int& stalled_looks) {
+    constexpr int patience = 2;
+    const std::vector<std::string> stalled = watchdog.look();
+    stalled_looks = stalled.empty() ? 0 : stalled_looks + 1;
+    if (stalled_looks == patience) {
+        for (const std::string& name : stalled) {
+            log.write(LogComponent::service, LogLevel::error, "the " + name + " does not get on");
+        }
+    }
+}
+
+/// Until SIGTERM; SIGHUP reads the settings again.
+void watch(service::Service& service, api::Server& server, daemon::Log& log, const Signals& signals) {
+    constexpr auto tick_interval = std::chrono::seconds{10};
+    using Clock = std::chrono::steady_clock;
+    Watchdog watchdog{service.hearts()};
+    const auto look_interval = Watchdog::look_interval();
+    Clock::time_point ticked = Clock::now();
+    int stalled_looks = 0;
+    while (true) {
+        switch (signals.wait(look_interval.value_or(std::chrono::seconds{1}))) {
+        case SIGTERM:
+        case SIGINT:
+            return;
+        case SIGHUP:
+            reload(service, server, log);
+            break;
+        default:
+            break;
+        }
+        if (look_interval) {
+            look(watchdog, log, stalled_looks);
+        }
+        if (Clock::now() - ticked >= tick_interval) {
+            service.tick();
+            ticked = Clock::now();
+        }
+    }
+}
+
+} // namespace
+
+config::Checked<config::Settings> load_settings(const std::filesystem::path& file) {
+    return config::load(file, config::read_environment(::environ));
+}
+
+cli::ExitCode serve(const std::filesystem::path& file, const config::Settings& settings, const Signals& signals) {
+    daemon::Log log{settings.logging, daemon::make_log_target(settings.logging.target)};
+    auto opened = service::Service::open({settings, [&file] { return load_settings(file); },
+                                          [&log](const spool::Event& event) { service::log_event(log, event); },
+                                          LINEFEED_VERSION});
+    if (!opened) {
+        log.write(LogComponent::service, LogLevel::error, opened.error().message);
+        return cli::ExitCode::other;
+    }
+    service::Service& service = **opened;
+    api::Server server{service, settings};
+    if (const auto started = server.start(); !started) {
+        log.write(LogComponent::api, LogLevel::error, started.error().message);
+        return cli::ExitCode::other;
+    }
+    service.start();
+    daemon::notify_ready("running");
+    watch(service, server, log, signals);
+    daemon::notify_stopping("stopping the lines");
+    service.shut_down(); // still answering what it is asked meanwhile
+    server.stop();
+    return cli::ExitCode::done;
+}
+
+} // namespace linefeed::linefeedd
