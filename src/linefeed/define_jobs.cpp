@@ -1,3 +1,4 @@
+#include "cli/distrust_command.hpp"
 #include "client/ledger_command.hpp"
 #include "daemon/record_ranges.hpp"
 #include "linefeed/definitions.hpp"
@@ -64,11 +65,29 @@ void add_ledger(CLI::App& app, Commands& commands) {
                         }});
 }
 
+void add_distrust(CLI::App& app, Commands& commands) {
+    const auto options = std::make_shared<cli::DistrustOptions>();
+    CLI::App& distrust = *app.add_subcommand(
+        "distrust", "Put every record in doubt that a spool from a backup does not know as printed");
+    distrust.footer(
+        "linefeed-restore does so: what was printed after the backup is not known to it. Then an operator says "
+        "from the\nproducts how far each job came.");
+    distrust.add_option("--spool", options->spool, "Database of jobs and the print ledger")->required();
+    distrust.add_option("--reason", options->reason, "Stands in the ledger with the name of the user")->required();
+    add_output(distrust, options->json);
+    commands.push_back({&distrust, [options] {
+                            return options->reason.find_first_not_of(" \t") == std::string::npos
+                                       ? usage_error("--reason: say why")
+                                       : cli::run_distrust(*options);
+                        }});
+}
+
 } // namespace
 
 void define_jobs(CLI::App& app, Commands& commands) {
     add_jobs(app, commands);
     add_ledger(app, commands);
+    add_distrust(app, commands);
 }
 
 } // namespace linefeed

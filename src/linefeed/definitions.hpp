@@ -27,7 +27,7 @@ using Commands = std::vector<Command>;
 // Each adds its subcommands to `app` and to `commands`.
 void define_print(CLI::App& app, Commands& commands);
 void define_drop(CLI::App& app, Commands& commands);
-/// jobs, ledger
+/// jobs, ledger, distrust
 void define_jobs(CLI::App& app, Commands& commands);
 /// import, job, queue, cancel, reprint
 void define_job_changes(CLI::App& app, Commands& commands);
