@@ -216,16 +216,18 @@ class Scripts(TestCase):
 
 
 def options(program, *command):
-    """Every option that --help of the program shows."""
+    """Every option that --help of the program, or of a command and its subcommands, shows."""
     code, output = run(BUILD / "bin" / program, *command, "--help")
     if code != 0:
         raise AssertionError(f"{program} {command}: {output}")
-    return {name for names in re.findall(r"(?m)^ {2}(-\S*)", output) for name in names.split(",")}
+    inner = commands(program, *command) if command else []
+    shown = {name for names in re.findall(r"(?m)^ {2}(-\S*)", output) for name in names.split(",")}
+    return shown.union(*(options(program, *command, name) for name in inner))
 
 
-def commands(program):
+def commands(program, *command):
     """Its subcommands, as --help shows them."""
-    _, output = run(BUILD / "bin" / program, "--help")
+    _, output = run(BUILD / "bin" / program, *command, "--help")
     found = re.search(r"(?ms)^Subcommands:\n(.*?)(\n\n|\Z)", output)
     return re.findall(r"(?m)^  ([a-z][a-z-]*)", found.group(1)) if found else []
 
