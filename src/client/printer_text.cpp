@@ -50,9 +50,9 @@ std::string time_of(const Json& figures, std::string_view name) {
 }
 
 std::string error_line(const Json& error) {
-    std::string line = "error " + number_text(error, "code") + ": " + text(error, "words");
+    std::string line = "error " + text(error, "words"); // which begin with its number
     for (const char* more : {"meaning", "advice"}) {
-        if (const std::string words = text(error, more); !words.empty()) {
+        if (const std::string words = text(error, more); line.find(words) == std::string::npos) { // not said already
             line += "; " + words;
         }
     }

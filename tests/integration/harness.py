@@ -352,7 +352,6 @@ def rows(records):
     return [[text] for _, text in records]
 
 
-HANGUP = signal.SIGHUP
 INTERRUPT = signal.SIGINT
 TERMINATE = signal.SIGTERM
 

@@ -218,7 +218,7 @@ class ServiceCommands(ServiceTest):
         self.assert_code(0, self.linefeed("start", self.imported(harness.names(5)), "--wait"))
         self.assertTrue(any("=MR" in frame["text"] for frame in self.done("printer", "line1", "frames", "-o", "json").json()))
         self.assertIn("->", self.done("printer", "line1", "frames").out)
-        self.refused(2, "printer", "line1", "acknowledge", 10202)
+        self.refused(4, "printer", "line1", "acknowledge", 10202, words=("10202", "no error"))
         self.refused(2, "printer", "line1", "acknowledge", words=("ERROR",))
         self.done("printer", "line1", "suspend", "--hold", 30)
         self.assertTrue(self.done("printer", "line1", "-o", "json").json()["panel_suspended"])
@@ -290,23 +290,35 @@ class ServiceCommands(ServiceTest):
         self.assert_code(0, harness.Job(looking).wait())
         changing = [str(harness.BIN / "linefeed"), "reload", "--url", f"http://127.0.0.1:{self.port}"]
         self.assertNotEqual(0, harness.Job(changing).wait().code, "without a token nobody may change anything")
-        made = self.linefeed_alone("token", "new", "mes", "--role", "operator", "-o", "json").json()
-        (self.directory / "tokens").write_text(made["line"] + "\n", encoding="utf-8")
-        (self.directory / "tokens").chmod(0o600)
-        (self.directory / "token").write_text(made["token"] + "\n", encoding="utf-8")
+        self.kill_service()
+        tokens = self.directory / "tokens"
+        tokens.write_text(self.new_token("display", "viewer")["line"] + "\n", encoding="utf-8")
+        tokens.chmod(0o600)
         self.configure(more=", tokens_file: tokens")
-        self.service.send_signal(harness.HANGUP)
-        while "service.reloaded" not in self.done("events").out:
-            time.sleep(0.05)
-        with_token = ["--token-file", str(self.directory / "token")]
+        self.start_service()
+        made = self.new_token("mes", "operator")
+        token = self.directory / "token"
+        token.write_text(made["token"] + "\n", encoding="utf-8")
+        with_token = ["--token-file", str(token)]
+        self.assertNotEqual(0, harness.Job(changing + with_token).wait().code, "the service does not know it yet")
+        with tokens.open("a", encoding="utf-8") as file:
+            file.write(made["line"] + "\n")
+        self.done("reload")
+        self.assert_code(0, harness.Job(changing + with_token).wait())
+        before = tokens.read_text(encoding="utf-8")
+        tokens.write_text("nonsense\n", encoding="utf-8")
+        self.refused(2, "reload", words=("the old settings stay", "tokens:1"))
+        self.assertNotEqual(0, harness.Job(changing + with_token).wait().code, "refused, as the file is wrong still")
+        self.assert_code(0, harness.Job(looking + with_token).wait())
+        tokens.write_text(before, encoding="utf-8")
         self.assert_code(0, harness.Job(changing + with_token).wait())
         file = self.write_csv([["über TCP"]])
         sent = harness.Job([str(harness.BIN / "linefeed"), "import", str(file), "--layout", "names", *changing[2:], *with_token]).wait()
         self.assert_code(0, sent)
         self.assertNotEqual(0, harness.Job(looking).wait().code)
 
-    def linefeed_alone(self, *arguments):
-        return harness.Job([str(harness.BIN / "linefeed"), *arguments]).wait()
+    def new_token(self, name, role):
+        return harness.Job([str(harness.BIN / "linefeed"), "token", "new", name, "--role", role, "-o", "json"]).wait().json()
 
 
 class ServiceTrouble(ServiceTest):

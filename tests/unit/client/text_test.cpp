@@ -73,8 +73,11 @@ TEST_F(Texts, shouldTellHowDoubtIsSettledByTheLastProductOnlyWhereThatTells) {
 
 TEST_F(Texts, shouldListPrintersWithWhatIsWrongBelow) {
     Json broken = printer_json("line2");
-    broken["error"] = {
-        {"code", 10202}, {"raw", 1}, {"words", "head 2"}, {"meaning", "cover open"}, {"advice", "close it"}};
+    broken["error"] = {{"code", 10202},
+                       {"raw", 1},
+                       {"words", "10202 (battery low), message from FEP"},
+                       {"meaning", "battery low"},
+                       {"advice", "replace it"}};
     broken["warnings"] = {"data for 3 min"};
     Json lost = printing_printer();
     lost["name"] = "line3";
@@ -88,7 +91,7 @@ TEST_F(Texts, shouldListPrintersWithWhatIsWrongBelow) {
               "line2    error                                                        tcp://192.168.1.20:3000\n"
               "line3    printing, no link   12      2                                tcp://192.168.1.20:3000\n"
               "line4    idle                                                         tcp://192.168.1.20:3000\n"
-              "line2: error 10202: head 2; cover open; close it\n"
+              "line2: error 10202 (battery low), message from FEP; replace it\n"
               "line2: data for 3 min\n");
 }
 
