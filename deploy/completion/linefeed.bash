@@ -1,7 +1,7 @@
 # bash completion for linefeed, linefeedd and linefeed-sim. What there is to complete is read from --help of the program
 # itself, so that it is always right for the version that is installed.
 
-# The part of --help in front of which all words of the command line so far have led.
+# What --help of a program or of one of its commands shows.
 _linefeed_help() { # PROGRAM [COMMAND]
     "$@" --help 2> /dev/null < /dev/null
 }
@@ -29,25 +29,26 @@ _linefeed_takes_value() { # OPTION
         END { exit !found }'
 }
 
+# The help of the command that the words so far have led to; names that are no command at their place are arguments.
+_linefeed_help_of_line() { # PROGRAM
+    local path=("$1") help i word
+    help=$(_linefeed_help "${path[@]}")
+    for ((i = 1; i < COMP_CWORD; ++i)); do
+        word=${COMP_WORDS[i]}
+        if [[ $word != -* ]] && _linefeed_commands <<< "$help" | grep -qxF -- "$word"; then
+            path+=("$word")
+            help=$(_linefeed_help "${path[@]}")
+        fi
+    done
+    printf '%s\n' "$help"
+}
+
 _linefeed() {
-    local program=${COMP_WORDS[0]} word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD - 1]} command="" help i values
+    local program=${COMP_WORDS[0]} word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD - 1]} help commands values
     COMPREPLY=()
     type -P -- "${program/#\~/$HOME}" > /dev/null || return 0
-    program=${program/#\~/$HOME}
-    help=$(_linefeed_help "$program")
-    if [[ ${program##*/} == linefeed ]]; then
-        for ((i = 1; i < COMP_CWORD; ++i)); do
-            if [[ ${COMP_WORDS[i]} != -* ]]; then
-                command=${COMP_WORDS[i]}
-                break
-            fi
-        done
-        if [[ -z $command ]]; then
-            mapfile -t COMPREPLY < <(compgen -W "$(_linefeed_commands <<< "$help"; _linefeed_options <<< "$help")" -- "$word")
-            return 0
-        fi
-        help=$(_linefeed_help "$program" "$command")
-    fi
+    help=$(_linefeed_help_of_line "${program/#\~/$HOME}")
+    commands=$(_linefeed_commands <<< "$help")
     if [[ $before == -* ]] && _linefeed_takes_value "$before" <<< "$help"; then
         values=$(_linefeed_values "$before" <<< "$help")
         if [[ -n $values ]]; then
@@ -56,6 +57,10 @@ _linefeed() {
         fi
     elif [[ $word == -* ]]; then
         mapfile -t COMPREPLY < <(compgen -W "$(_linefeed_options <<< "$help")" -- "$word")
+        return 0
+    fi
+    if [[ -n $commands ]]; then
+        mapfile -t COMPREPLY < <(compgen -W "$commands" -- "$word")
         return 0
     fi
     compopt -o filenames 2> /dev/null

@@ -216,13 +216,16 @@ class Scripts(TestCase):
 
 
 def options(program, *command):
-    """Every option that --help of the program, or of a command and its subcommands, shows."""
+    """Every option that --help of the program, or of a command, shows."""
     code, output = run(BUILD / "bin" / program, *command, "--help")
     if code != 0:
         raise AssertionError(f"{program} {command}: {output}")
-    inner = commands(program, *command) if command else []
-    shown = {name for names in re.findall(r"(?m)^ {2}(-\S*)", output) for name in names.split(",")}
-    return shown.union(*(options(program, *command, name) for name in inner))
+    return {name for names in re.findall(r"(?m)^ {2}(-\S*)", output) for name in names.split(",")}
+
+
+def all_options(program, *command):
+    """Those of its subcommands as well."""
+    return options(program, *command).union(*(all_options(program, *command, inner) for inner in commands(program, *command)))
 
 
 def commands(program, *command):
@@ -249,8 +252,12 @@ class Completion(Installed):
     def test_offers_the_commands_and_their_options(self):
         self.assertLessEqual(set(commands("linefeed")), self.complete("linefeed", ""))
         self.assertEqual({"ledger"}, self.complete("linefeed", "le"))
-        for command in commands("linefeed"):
-            self.assertEqual(options("linefeed", command), self.complete("linefeed", command, "-"), command)
+        self.offers_options()
+
+    def offers_options(self, *path):
+        for command in commands("linefeed", *path):
+            self.assertEqual(options("linefeed", *path, command), self.complete("linefeed", *path, command, "-"), (*path, command))
+            self.offers_options(*path, command)
 
     def test_offers_values_and_files(self):
         (self.stage / "names file.csv").touch()
@@ -289,7 +296,7 @@ class ManPages(TestCase):
         sections = {heading.split()[1]: body for heading, body in self.sections(self.source("linefeed.1")).items() if heading.startswith("linefeed ")}
         self.assertEqual(set(commands("linefeed")), set(sections))
         for command, body in sections.items():
-            self.assertEqual(options("linefeed", command) - {"-h", "--help"}, self.documented(body), command)
+            self.assertEqual(all_options("linefeed", command) - {"-h", "--help"}, self.documented(body), command)
 
     def test_the_options_of_the_other_programs_are_all_there_and_no_others(self):
         for program, page in (("linefeed-sim", "linefeed-sim.1"), ("linefeedd", "linefeedd.8")):
