@@ -56,7 +56,7 @@ Result<void> Wait::look() {
     if (!lost_) {
         view_.message(cli::printable(job.error().message) + "; waiting for it");
     }
-    lost_ = true;
+    lost_ = end_.lost = true;
     return {};
 }
 

@@ -21,6 +21,7 @@ inline constexpr std::chrono::seconds service_patience{30};
 struct WaitEnd {
     Json job; ///< as it was seen last
     bool interrupted = false;
+    bool lost = false; ///< the service was away meanwhile
 };
 
 /// Waits until the job stands, or Ctrl-C, which ends the looking on and nothing else. Progress on stderr unless

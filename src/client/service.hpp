@@ -49,8 +49,10 @@ struct Trouble {
 class Service {
 public:
     explicit Service(const ServicePlace& place);
-    /// Another connection to the same service, which gives up after a few seconds without an answer: for looks that
-    /// come again and again, and between which Ctrl-C is heard.
+    /// Another connection to the same service. Any thread.
+    [[nodiscard]] Service again() const { return Service{settings_}; }
+    /// The same, but it gives up after a few seconds without an answer: for looks that come again and again, and
+    /// between which Ctrl-C is heard.
     [[nodiscard]] Service impatient() const;
 
     [[nodiscard]] const api::ServiceAddress& address() const { return settings_.address; }

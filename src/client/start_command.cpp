@@ -57,7 +57,7 @@ Result<ExitCode> follow(Service& service, std::int64_t job, std::optional<std::i
         show(job_line(end->job) + '\n');
     }
     const ExitCode code = exit_code_of_phase(text(end->job, "phase"));
-    const bool never_reached = code == ExitCode::stopped && last_heard(service, printer) == heard_before;
+    const bool never_reached = code == ExitCode::stopped && !end->lost && last_heard(service, printer) == heard_before;
     return never_reached ? ExitCode::unreachable : code;
 }
 

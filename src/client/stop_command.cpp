@@ -1,6 +1,7 @@
 #include "client/job_text.hpp"
 #include "client/printer_commands.hpp"
 
+#include <future>
 #include <limits>
 
 namespace linefeed::client {
@@ -36,21 +37,50 @@ Result<std::vector<Json>> standing_jobs(Service& service, const std::string& pri
     return service.list("/api/v1/jobs?printer=" + api::url_encoded(printer) + "&phase=stopped,in_doubt&limit=10", most);
 }
 
-/// Stops one after the other; the first failure is told at the end, when all were tried.
+/// Stops all at the same time, and waits for each: no line goes on because another one's printer does not answer.
+std::vector<Result<Json>> stop_each(const Service& service, const std::vector<std::string>& printers) {
+    std::vector<std::future<Result<Json>>> stops;
+    for (const std::string& printer : printers) {
+        stops.push_back(std::async(std::launch::async, [&service, &printer] {
+            return service.again().post_at_once(printer_path(printer, "/stop"));
+        }));
+    }
+    std::vector<Result<Json>> answers;
+    for (auto& answer : stops) {
+        answers.push_back(answer.get());
+    }
+    return answers;
+}
+
+void show_stopped(const Json& stopped) {
+    for (const Json& printer : stopped) {
+        show(text(printer, "printer") + ": stopped\n");
+        for (const Json& job : items(printer, "jobs")) {
+            show("  " + job_line(job) + '\n');
+        }
+    }
+}
+
+/// The first failure is told at the end, behind what was stopped.
 Result<ExitCode> stop(Service& service, const StopOptions& options) {
     const auto printers = printers_to_stop(service, options);
     if (!printers) {
         return printers.error();
     }
+    if (printers->empty() && !options.common.json) {
+        show("no printer prints\n");
+    }
+    const std::vector<Result<Json>> answers = stop_each(service, *printers);
     std::optional<Failure> failed;
     ExitCode code = ExitCode::done;
     Json stopped = Json::array();
-    for (const std::string& printer : *printers) {
-        if (const auto done = service.post_at_once(printer_path(printer, "/stop")); !done) {
+    for (std::size_t i = 0; i < printers->size(); ++i) {
+        const std::string& printer = (*printers)[i];
+        if (!answers[i]) {
             if (failed) {
-                say(printer + ": " + done.error().message);
+                say(printer + ": " + answers[i].error().message);
             }
-            failed = failed.value_or(done.error());
+            failed = failed.value_or(answers[i].error());
             continue;
         }
         const auto jobs = standing_jobs(service, printer);
@@ -62,21 +92,13 @@ Result<ExitCode> stop(Service& service, const StopOptions& options) {
             code = text(job, "phase") == "in_doubt" ? ExitCode::in_doubt : code;
         }
     }
+    if (options.common.json && !failed) {
+        show_json(stopped);
+    } else if (!options.common.json) {
+        show_stopped(stopped);
+    }
     if (failed) {
         return *failed;
-    }
-    if (options.common.json) {
-        show_json(stopped);
-        return code;
-    }
-    for (const Json& printer : stopped) {
-        show(text(printer, "printer") + ": stopped\n");
-        for (const Json& job : items(printer, "jobs")) {
-            show("  " + job_line(job) + '\n');
-        }
-    }
-    if (printers->empty()) {
-        show("no printer prints\n");
     }
     return code;
 }

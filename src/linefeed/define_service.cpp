@@ -3,6 +3,7 @@
 #include "client/watch_command.hpp"
 #include "linefeed/definitions.hpp"
 
+#include <limits>
 #include <memory>
 
 namespace linefeed {
@@ -42,7 +43,8 @@ void add_events(CLI::App& app, Commands& commands) {
     events.footer("With -o json one line for each event. With --follow a service that is away is waited for, and then\n"
                   "what was missed is shown; Ctrl-C ends it.");
     events.add_flag("-f,--follow", options->follow, "Go on with what happens");
-    CLI::Option* const after = events.add_option("--after", options->after, "All behind the event with this number");
+    CLI::Option* const after = events.add_option("--after", options->after, "All behind the event with this number")
+                                   ->check(CLI::Range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max()));
     events.add_option("--limit", options->limit, "So many of the newest")
         ->capture_default_str()
         ->check(CLI::Range(0, 100'000))

@@ -227,7 +227,7 @@ class ServiceCommands(ServiceTest):
         self.assertEqual(["in"], [folder["name"] for folder in self.done("folders", "-o", "json").json()])
         self.assertIn(str(self.folder), self.done("folders").out)
         self.assertIn("ready", self.done("status").out)
-        self.assertIn("no printer prints", self.done("stop", "--all").out)
+        self.assertEqual("line1: stopped\n", self.done("stop", "--all").out)
 
     def test_reload_whole_or_not_at_all(self):
         self.configure(level="debug")
@@ -352,7 +352,7 @@ class ServiceTrouble(ServiceTest):
                 (("reprint", number, "--records", "1", "--reason", " ", "--yes"), ("--reason",)),
                 (("reprint", number, "--records", "1", "--yes"), ("--reason",)), (("reprint", number, "--records", "1", "--reason", "x", "--yes"), ("1",)),
                 (("printer", "line1", "acknowledge", "0"), ("ERROR",)), (("printer", "line1", "suspend", "--hold", "0"), ("--hold",)),
-                (("status", "--url", "https://x:1"), ("http",)), (("events", "--after", "-1"), ("--after",)), (("nothing",), ())):
+                (("status", "--url", "http://x:1"), ("exclude each other",)), (("events", "--after", "-1"), ("--after",)), (("nothing",), ())):
             self.refused(2, *arguments, words=words)
         self.assertEqual("queued", self.job(number)["phase"])
 

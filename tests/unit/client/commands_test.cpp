@@ -284,7 +284,10 @@ TEST_F(Commands, shouldNotGuessWhichOfSeveralPrintersToStop) {
     const Said said = run(run_stop, StopOptions{common(), "", false});
     EXPECT_EQ(said.code, ExitCode::usage);
     EXPECT_THAT(said.err, HasSubstr("line1, line2"));
-    EXPECT_EQ(run(run_stop, StopOptions{common(), "", true}).code, ExitCode::unreachable);
+    const Said all = run(run_stop, StopOptions{common(), "", true});
+    EXPECT_EQ(all.code, ExitCode::unreachable);
+    EXPECT_EQ(all.out, "line1: stopped\n");
+    EXPECT_THAT(all.err, HasSubstr("line2 does not answer"));
     EXPECT_THAT(service.lines(), testing::Contains("POST /api/v1/printers/line1/stop"));
     EXPECT_THAT(service.lines(), testing::Contains("POST /api/v1/printers/line2/stop"));
 }
