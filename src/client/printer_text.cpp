@@ -21,6 +21,17 @@ Cell state_of(const Json& printer) {
     return link == "up" ? Cell{phase, Colour::good} : Cell{phase + ", no link", Colour::bad};
 }
 
+/// The queue behind the job that is on the line.
+std::vector<Json> waiting_jobs(const Json& printer) {
+    std::vector<Json> waiting;
+    for (const Json& job : items(printer, "queue")) {
+        if (job != member(printer, "job")) {
+            waiting.push_back(job);
+        }
+    }
+    return waiting;
+}
+
 std::string rate_of(const Json& figures) {
     const double rate = real(figures, "rate_per_s").value_or(0);
     if (rate <= 0) {
@@ -67,7 +78,7 @@ Colour colour_of(const std::string& severity) {
 
 PrinterCells printer_cells(const Json& printer) {
     const Json& figures = member(printer, "figures");
-    const std::size_t queue = items(printer, "queue").size();
+    const std::size_t queue = waiting_jobs(printer).size();
     return {.name = {text(printer, "name"), Colour::strong},
             .state = state_of(printer),
             .job = {number_text(printer, "job")},
@@ -119,7 +130,7 @@ std::string printers_text(const std::vector<Json>& printers, const Screen& scree
 std::string printer_text(const Json& printer, const Screen& screen) {
     const Json& figures = member(printer, "figures");
     std::string queue;
-    for (const Json& job : items(printer, "queue")) {
+    for (const Json& job : waiting_jobs(printer)) {
         queue += (queue.empty() ? "" : ", ") + job.dump();
     }
     Facts facts;

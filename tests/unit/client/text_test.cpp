@@ -31,7 +31,7 @@ Json printing_printer() {
     Json printer = printer_json("line1");
     printer["phase"] = "printing";
     printer["job"] = 12;
-    printer["queue"] = {13, 14};
+    printer["queue"] = {12, 13, 14};
     printer["figures"] = {{"fifo_depth", 256},    {"fifo_entries", 243}, {"credit", 13},
                           {"rate_per_s", 812.4},  {"lead_time_s", 0.25}, {"time_to_empty_s", 0.299},
                           {"data_left_s", 3723.0}};
