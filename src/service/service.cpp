@@ -117,6 +117,7 @@ void Service::shut_down() {
     for (const LinePtr& line : all) {
         static_cast<void>(line->wait_until_idle());
     }
+    events_.flush();
 }
 
 void Service::tick() {
