@@ -4,6 +4,7 @@
 #include <boost/asio/post.hpp>
 
 #include <algorithm>
+#include <chrono>
 #include <unistd.h>
 
 namespace linefeed::daemon {
@@ -131,6 +132,8 @@ void JobRun::end(const feeder::End& end) {
     outcome_ = end.outcome;
     push_cumulative();
     push(end);
+    // Before anybody looks at a run that is over: what the printer said last, such as that an error has gone.
+    publish_printer(Instant{std::chrono::steady_clock::now().time_since_epoch()});
     finished_.store(true, std::memory_order_release);
     news_.notify();
     asio::post(threads_.feed.context(), [this] {

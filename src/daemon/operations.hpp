@@ -276,7 +276,7 @@ public:
 
     /// What is printed on records of a job, ascending; those that it does not have are left out. At most 1000 at once.
     [[nodiscard]] virtual Result<std::vector<DoubtView::Record>> records(spool::JobId id, RecordRange records) = 0;
-    /// Records of a job with their fate, ascending, from `first` on, at most `limit` stretches.
+    /// Records of a job with their fate, ascending. At most 1001 stretches at once; what follows them is asked for next.
     [[nodiscard]] virtual Result<std::vector<spool::HistoryStretch>> history(spool::JobId id, RecordRange records) = 0;
     [[nodiscard]] virtual Result<std::vector<spool::LedgerRow>> ledger(spool::JobId id, std::int64_t after,
                                                                        std::size_t limit) = 0;

@@ -17,16 +17,9 @@ using daemon::Watchdog;
 
 namespace {
 
-/// The settings again: those of the service, and where they were taken, of what stands around it.
-void reload(service::Service& service, api::Server& server, daemon::Log& log) {
+void reload(service::Service& service) {
     daemon::notify_reloading();
-    if (service.reload({"linefeedd (SIGHUP)"})) { // an event tells what came of it
-        const auto settings = service.settings();
-        log.set_levels(settings->logging);
-        if (const auto taken = server.reload(settings->http); !taken) {
-            log.write(LogComponent::api, LogLevel::error, "the API goes on as it was: " + taken.error().message);
-        }
-    }
+    (void)service.reload({"linefeedd (SIGHUP)"}); // an event tells what came of it
     daemon::notify_ready("running");
 }
 
@@ -43,7 +36,7 @@ void look(Watchdog& watchdog, daemon::Log& log, int& stalled_looks) {
 }
 
 /// Until SIGTERM; SIGHUP reads the settings again.
-void watch(service::Service& service, api::Server& server, daemon::Log& log, const Signals& signals) {
+void watch(service::Service& service, daemon::Log& log, const Signals& signals) {
     constexpr auto tick_interval = std::chrono::seconds{10};
     using Clock = std::chrono::steady_clock;
     Watchdog watchdog{service.hearts()};
@@ -56,7 +49,7 @@ void watch(service::Service& service, api::Server& server, daemon::Log& log, con
         case SIGINT:
             return;
         case SIGHUP:
-            reload(service, server, log);
+            reload(service);
             break;
         default:
             break;
@@ -79,22 +72,32 @@ config::Checked<config::Settings> load_settings(const std::filesystem::path& fil
 
 cli::ExitCode serve(const std::filesystem::path& file, const config::Settings& settings, const Signals& signals) {
     daemon::Log log{settings.logging, daemon::make_log_target(settings.logging.target)};
-    auto opened = service::Service::open({settings, [&file] { return load_settings(file); },
-                                          [&log](const spool::Event& event) { service::log_event(log, event); },
-                                          LINEFEED_VERSION});
+    api::Server* told = nullptr; // of new settings; it is there before anybody can ask for a reload
+    auto opened = service::Service::open({.settings = settings,
+                                          .load = [&file] { return load_settings(file); },
+                                          .listen = [&log](const auto& event) { service::log_event(log, event); },
+                                          .version = LINEFEED_VERSION,
+                                          .take_over = [&](const config::Settings& next) -> Result<void> {
+                                              if (const auto taken = told->reload(next.http); !taken) {
+                                                  return taken.error();
+                                              }
+                                              log.set_levels(next.logging);
+                                              return {};
+                                          }});
     if (!opened) {
         log.write(LogComponent::service, LogLevel::error, opened.error().message);
         return cli::ExitCode::other;
     }
     service::Service& service = **opened;
     api::Server server{service, settings};
+    told = &server;
     if (const auto started = server.start(); !started) {
         log.write(LogComponent::api, LogLevel::error, started.error().message);
         return cli::ExitCode::other;
     }
     service.start();
     daemon::notify_ready("running");
-    watch(service, server, log, signals);
+    watch(service, log, signals);
     daemon::notify_stopping("stopping the lines");
     service.shut_down(); // still answering what it is asked meanwhile
     server.stop();

@@ -11,6 +11,7 @@ using daemon::JobPhase;
 
 Service::Service(ServiceOptions options, spool::Spool spool)
     : load_(std::move(options.load))
+    , take_over_(std::move(options.take_over))
     , version_(std::move(options.version))
     , started_ns_(daemon::wall_clock_ns())
     , spool_(std::move(spool))

@@ -33,6 +33,11 @@ struct ServiceOptions {
     /// Hears of each event at once, on the thread where it happens.
     EventLog::Listener listen = [](const spool::Event&) {};
     std::string version;
+    /// Takes new settings over for what stands around the service, at each reload before the service does; a failure
+    /// refuses all of them. One call at a time, on the thread of whoever reloads; must not call the service.
+    std::function<Result<void>(const config::Settings&)> take_over = [](const config::Settings&) {
+        return Result<void>{};
+    };
 };
 
 /// Flow: open(), start(), any of the operations from open() on, shut_down(). All callers must be gone before it is
@@ -160,6 +165,7 @@ private:
     void hold_back(spool::JobId id, const Failure& why);
 
     std::function<config::Checked<config::Settings>()> load_;
+    std::function<Result<void>(const config::Settings&)> take_over_;
     std::string version_;
     std::int64_t started_ns_ = 0;
     std::string real_time_;

@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t jobs_at_once = 200;
 constexpr std::size_t most_doubtful = 300;
 constexpr std::size_t most_records = 1000;
-constexpr std::size_t most_stretches = 1000;
+constexpr std::size_t most_stretches = 1001; // one more than a page of the API: it sees that there is another
 constexpr std::size_t rows_at_once = 4096;
 
 bool wanted(const daemon::JobFilter& filter, const JobView& view) {

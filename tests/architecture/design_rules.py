@@ -17,7 +17,9 @@ MAY_USE = {
     "daemon": {"base", "protocol", "feeder", "session", "link", "spool", "intake", "config"},
     "api": {"base", "protocol", "link", "spool", "config", "daemon"},
     "service": {"base", "protocol", "feeder", "session", "link", "spool", "intake", "config", "daemon"},
-    "cli": {"base", "protocol", "feeder", "session", "link", "spool", "intake", "config", "daemon", "api"},
+    "cli": {"base", "protocol", "feeder", "session", "link", "spool", "intake", "config", "daemon"},
+    "client": {"base", "protocol", "spool", "intake", "config", "daemon", "api", "cli"},
+    "linefeed": {"base", "protocol", "intake", "daemon", "cli", "client"},
     "linefeedd": {"base", "spool", "config", "daemon", "service", "api", "cli"},
 }
 
@@ -63,9 +65,9 @@ LIBRARY_FOLDERS = {
     r"sqlite3(ext)?\.h": {"spool", "intake"},
     r"boost/(asio|beast)(/.*|\.hpp)?": {"base", "link", "simulator", "daemon", "api"},
     r"prometheus/.*": {"api"},
-    r"CLI/.*": {"cli", "simulator", "linefeedd"},
+    r"CLI/.*": {"linefeed", "linefeedd", "simulator"},
     r"openssl/.*": {"spool", "api"},
     r"yaml-cpp/.*": {"config"},
     r"spdlog/.*|systemd/.*": {"daemon"},
-    r"nlohmann/.*": {"spool", "simulator", "config", "daemon", "api", "cli"},
+    r"nlohmann/.*": {"spool", "simulator", "config", "daemon", "api", "cli", "client"},
 }

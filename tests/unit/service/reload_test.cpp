@@ -37,6 +37,24 @@ TEST_F(ReloadTest, shouldKeepTheOldSettingsWhenTheNewOnesAreWrong) {
     EXPECT_TRUE(wait_until([&] { return testing::Value(event_kinds(), Contains("service.reload_refused")); }));
 }
 
+TEST_F(ReloadTest, shouldTakeNothingOverThatIsRefusedAroundTheService) {
+    std::vector<std::string> offered;
+    take_over_ = [&](const config::Settings& next) -> Result<void> {
+        offered.push_back(link::to_string(next.printers.at(0).address));
+        return offered.size() == 1 ? Result<void>{Failure{FailureKind::usage, "a token is wrong"}} : Result<void>{};
+    };
+    open(settings_text({"127.0.0.1:1"}));
+    EXPECT_THAT(offered, SizeIs(0)) << "it is told of what changes";
+    text_ = settings_text({"127.0.0.1:2"});
+    const auto refused = service_->reload(anna);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error(), (Failure{FailureKind::usage, "the old settings stay: a token is wrong"}));
+    EXPECT_EQ(service_->printer("line1")->address, "tcp://127.0.0.1:1");
+    EXPECT_TRUE(service_->reload(anna));
+    EXPECT_EQ(service_->printer("line1")->address, "tcp://127.0.0.1:2");
+    EXPECT_THAT(offered, ElementsAre("tcp://127.0.0.1:2", "tcp://127.0.0.1:2"));
+}
+
 TEST_F(ReloadTest, shouldNotChangeTheAddressOfAPrinterThatPrints) {
     SimulatedPrinter printer{directory_ / "tape.csv", 300};
     open(settings_text({printer.address()}));

@@ -51,7 +51,7 @@ protected:
         const auto load = [this] { return config::parse_settings(text_, directory_ / "linefeed.yaml", {}); };
         auto settings = load();
         ASSERT_TRUE(settings) << config::to_string(settings.error().kept().front());
-        auto service = Service::open({*settings, load, [](const spool::Event&) {}, "test"});
+        auto service = Service::open({.settings = *settings, .load = load, .version = "test", .take_over = take_over_});
         ASSERT_TRUE(service) << service.error().message;
         service_ = std::move(*service);
         service_->start();
@@ -112,6 +112,9 @@ protected:
 
     std::filesystem::path directory_;
     std::string text_; ///< what a reload reads
+    std::function<Result<void>(const config::Settings&)> take_over_ = [](const config::Settings&) {
+        return Result<void>{};
+    };
     std::unique_ptr<Service> service_;
 };
 

@@ -269,6 +269,31 @@ TEST_F(ServiceTest, shouldLetAnOperatorSettleADoubtAndGoOnBehindIt) {
     EXPECT_EQ(printer.products(), serials(5, 10));
 }
 
+TEST_F(ServiceTest, shouldShowThatAHistoryGoesOnBehindALongPage) {
+    const std::string text = settings_text({"127.0.0.1:1"});
+    open(text);
+    const spool::JobId job = import(1200);
+    service_.reset();
+    const auto records = [](std::uint32_t first, std::uint32_t last) {
+        return RecordRange::closed(RecordNumber{first}, RecordNumber{last});
+    };
+    { // each was told to be printed by an answer of its own
+        auto spool = spool::Spool::open(directory_ / "spool.db", {}).value();
+        const spool::RunId run =
+            spool.begin_run(job, records(1, 1200), R"({"printer":"tcp://x:1","last_printed_before":0})").value();
+        std::vector<spool::LedgerEntry> rows{{spool::LedgerKind::intent, run, records(1, 1200), {}}};
+        for (std::uint32_t k = 1; k <= 1200; ++k) {
+            rows.push_back({spool::LedgerKind::printed, run, records(k, k), "{\"k\":" + std::to_string(k) + "}"});
+        }
+        ASSERT_TRUE(spool.append(job, rows));
+    }
+    open(text);
+    const auto first = service_->history(job, records(1, 1200)).value();
+    ASSERT_THAT(first, SizeIs(1001)) << "more than the 1000 that the API shows at once";
+    EXPECT_EQ(first.back().range, records(1001, 1001));
+    EXPECT_THAT(service_->history(job, records(1001, 1200)).value(), SizeIs(200));
+}
+
 TEST_F(ServiceTest, shouldRememberAnswersOverARestart) {
     open(settings_text({"127.0.0.1:1"}));
     EXPECT_EQ(service_->remembered(anna, "k").value(), std::nullopt);

@@ -1,11 +1,11 @@
 // `linefeed token new`: a token for programs that use the service over TCP.
 #pragma once
 
-#include "cli/exit_code.hpp"
+#include "client/command.hpp"
 
 #include <string>
 
-namespace linefeed::cli {
+namespace linefeed::client {
 
 struct TokenOptions {
     std::string name;
@@ -16,4 +16,4 @@ struct TokenOptions {
 /// Shows the token, which is nowhere kept, and the line for http.tokens_file.
 [[nodiscard]] ExitCode run_token(const TokenOptions& options);
 
-} // namespace linefeed::cli
+} // namespace linefeed::client

@@ -3,32 +3,33 @@
 
 #include "base/record_number.hpp"
 #include "cli/exit_code.hpp"
+#include "client/job_source.hpp"
 
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <string>
 
-namespace linefeed::cli {
+namespace linefeed::client {
 
 struct JobsOptions {
-    std::filesystem::path spool;
+    JobSourceOptions source;
+    JobQuery query;
     bool json = false;
 };
 
 struct LedgerOptions {
-    std::filesystem::path spool;
+    JobSourceOptions source;
     std::int64_t job = 0;
     /// `--records N` or `N-M`: one line per record.
     std::optional<RecordRange> records;
-    /// `--verify`: check the hash chain of the whole spool.
+    /// `--verify`: check the hash chain of the whole ledger.
     bool verify = false;
     /// `--export csv|json`: one row per record that was ever issued.
     std::string export_format;
     bool json = false;
 };
 
-[[nodiscard]] ExitCode run_jobs(const JobsOptions& options);
-[[nodiscard]] ExitCode run_ledger(const LedgerOptions& options);
+[[nodiscard]] cli::ExitCode run_jobs(const JobsOptions& options);
+[[nodiscard]] cli::ExitCode run_ledger(const LedgerOptions& options);
 
-} // namespace linefeed::cli
+} // namespace linefeed::client

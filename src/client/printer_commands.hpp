@@ -1,0 +1,48 @@
+// `linefeed printers`, `linefeed printer P …` and `linefeed stop`: printers of the service.
+#pragma once
+
+#include "client/command.hpp"
+
+#include <cstdint>
+#include <string>
+
+namespace linefeed::client {
+
+struct PrinterOptions {
+    CommonOptions common;
+    std::string printer;
+};
+
+struct FramesOptions {
+    PrinterOptions printer;
+    bool error = false; ///< those before the last error
+};
+
+struct AcknowledgeOptions {
+    PrinterOptions printer;
+    std::int64_t error = 0; ///< PrinterError.code
+};
+
+struct SuspendOptions {
+    PrinterOptions printer;
+    bool suspend = true; ///< false: give the panel back
+    std::int64_t hold_s = 60;
+};
+
+struct StopOptions {
+    CommonOptions common;
+    std::string printer; ///< empty: the only one that prints
+    bool all = false;
+};
+
+[[nodiscard]] ExitCode run_printers(const CommonOptions& options);
+[[nodiscard]] ExitCode run_printer(const PrinterOptions& options);
+/// ExitCode::stopped if a job could not start.
+[[nodiscard]] ExitCode run_preflight(const PrinterOptions& options);
+[[nodiscard]] ExitCode run_frames(const FramesOptions& options);
+[[nodiscard]] ExitCode run_acknowledge(const AcknowledgeOptions& options);
+[[nodiscard]] ExitCode run_suspend(const SuspendOptions& options);
+/// Ends when the truth is in the ledger. ExitCode::in_doubt if an operator must decide about records then.
+[[nodiscard]] ExitCode run_stop(const StopOptions& options);
+
+} // namespace linefeed::client

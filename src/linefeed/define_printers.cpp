@@ -1,0 +1,72 @@
+#include "client/printer_commands.hpp"
+#include "linefeed/definitions.hpp"
+
+#include <memory>
+
+namespace linefeed {
+
+namespace {
+
+void add_printers(CLI::App& app, Commands& commands) {
+    const auto options = std::make_shared<client::CommonOptions>();
+    CLI::App& printers = *app.add_subcommand("printers", "List the printers, what they do, and what is wrong");
+    add_common(printers, *options);
+    commands.push_back({&printers, [options] { return client::run_printers(*options); }});
+}
+
+/// `linefeed printer NAME …`: what is done with the one printer. Options may stand in front of the action or behind it.
+void add_printer(CLI::App& app, Commands& commands) {
+    const auto options = std::make_shared<client::PrinterOptions>();
+    const auto error = std::make_shared<bool>(false);
+    const auto code = std::make_shared<std::int64_t>(0);
+    const auto hold_s = std::make_shared<std::int64_t>(60);
+    CLI::App& printer = *app.add_subcommand("printer", "Show one printer, or do something with it");
+    printer.add_option("PRINTER", options->printer, "Its name in the configuration")->required();
+    add_common(printer, options->common);
+    printer.require_subcommand(0, 1);
+
+    CLI::App& preflight = *printer.add_subcommand("preflight", "Ask the printer whether a job could start");
+    preflight.footer("Exit codes: 0 it could, 4 it could not: each finding says what to do.");
+    CLI::App& frames = *printer.add_subcommand("frames", "Show the last frames each way");
+    frames.add_flag("--error", *error, "Those before the last error, if there was one");
+    CLI::App& acknowledge = *printer.add_subcommand("acknowledge", "Acknowledge the error that the printer shows");
+    acknowledge.add_option("ERROR", *code, "Its number, see linefeed printer PRINTER; another one is left alone")
+        ->required()
+        ->check(CLI::Range(1, 33'554'431));
+    CLI::App& suspend = *printer.add_subcommand("suspend", "Suspend the panel, so that nobody presses a key on it");
+    suspend.add_option("--hold", *hold_s, "Seconds until it is given back by itself")
+        ->capture_default_str()
+        ->check(CLI::Range(1, 86'400));
+    CLI::App& release = *printer.add_subcommand("release", "Give the panel back");
+    for (CLI::App* const action : {&preflight, &frames, &acknowledge, &suspend, &release}) {
+        action->fallthrough();
+    }
+
+    commands.push_back({&preflight, [options] { return client::run_preflight(*options); }});
+    commands.push_back({&frames, [options, error] { return client::run_frames({*options, *error}); }});
+    commands.push_back({&acknowledge, [options, code] { return client::run_acknowledge({*options, *code}); }});
+    commands.push_back({&suspend, [options, hold_s] { return client::run_suspend({*options, true, *hold_s}); }});
+    commands.push_back({&release, [options] { return client::run_suspend({*options, false}); }});
+    commands.push_back({&printer, [options] { return client::run_printer(*options); }});
+}
+
+void add_stop(CLI::App& app, Commands& commands) {
+    const auto options = std::make_shared<client::StopOptions>();
+    CLI::App& stop = *app.add_subcommand("stop", "Stop a printer, and show where its job stands");
+    stop.footer("Ends when the truth is in the ledger. Exit codes: 0 stopped, 6 and records are in doubt.");
+    CLI::Option* const name = stop.add_option("PRINTER", options->printer,
+                                              "Its name in the configuration; default: the only one that prints");
+    stop.add_flag("--all", options->all, "Every printer that prints")->excludes(name);
+    add_common(stop, options->common);
+    commands.push_back({&stop, [options] { return client::run_stop(*options); }});
+}
+
+} // namespace
+
+void define_printers(CLI::App& app, Commands& commands) {
+    add_stop(app, commands);
+    add_printers(app, commands);
+    add_printer(app, commands);
+}
+
+} // namespace linefeed
