@@ -22,6 +22,7 @@ ALTER TABLE ledger_of_003 RENAME TO ledger;
 CREATE INDEX ledger_by_job ON ledger (job);
 CREATE INDEX ledger_run_starts ON ledger (job) WHERE kind = 'run_started';
 CREATE INDEX ledger_run_ends ON ledger (run) WHERE kind = 'run_ended';
+CREATE INDEX ledger_doubts ON ledger (run) WHERE kind = 'in_doubt'; -- few: a doubt is judged without reading its run
 
 CREATE TRIGGER ledger_rows_follow_each_other BEFORE INSERT ON ledger
     WHEN NEW.sequence <> (SELECT ifnull(max(sequence), 0) + 1 FROM ledger)
