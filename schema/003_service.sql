@@ -48,6 +48,11 @@ CREATE TABLE tickets (
 CREATE INDEX tickets_in_queues ON tickets (printer, place) WHERE place IS NOT NULL;
 CREATE INDEX tickets_begun ON tickets (printer) WHERE begun = 1;
 
+-- Stopped by an operator: nothing starts there by itself until somebody starts a job.
+CREATE TABLE held_printers (
+    printer TEXT PRIMARY KEY -- name in the settings
+) STRICT, WITHOUT ROWID;
+
 CREATE TABLE events (
     id      INTEGER PRIMARY KEY AUTOINCREMENT, -- never used again: clients go on behind the last one they have seen
     time_ns INTEGER NOT NULL,

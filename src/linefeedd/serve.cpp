@@ -1,5 +1,6 @@
 #include "linefeedd/serve.hpp"
 
+#include "api/core.hpp"
 #include "api/server.hpp"
 #include "daemon/log.hpp"
 #include "daemon/service_manager.hpp"
@@ -17,17 +18,22 @@ using daemon::Watchdog;
 
 namespace {
 
-/// The settings again: those of the service, and where they were taken, of what stands around it.
-void reload(service::Service& service, api::Server& server, daemon::Log& log) {
+void reload(service::Service& service) {
     daemon::notify_reloading();
-    if (service.reload({"linefeedd (SIGHUP)"})) { // an event tells what came of it
-        const auto settings = service.settings();
-        log.set_levels(settings->logging);
-        if (const auto taken = server.reload(settings->http); !taken) {
-            log.write(LogComponent::api, LogLevel::error, "the API goes on as it was: " + taken.error().message);
-        }
-    }
+    static_cast<void>(service.reload({"linefeedd (SIGHUP)"})); // an event tells what came of it
     daemon::notify_ready("running");
+}
+
+/// Who was refused leaves a trace; what changes something is in the audit log.
+void log_request(daemon::Log& log, const api::AccessRecord& request) {
+    constexpr int unauthorized = 401;
+    constexpr int forbidden = 403;
+    constexpr int first_failure = 500;
+    const bool refused = request.status == unauthorized || request.status == forbidden;
+    const LogLevel level = refused || request.status >= first_failure ? LogLevel::warning : LogLevel::debug;
+    log.write(LogComponent::api, level,
+              request.method + ' ' + request.target + ": " + std::to_string(request.status) + ", from " + request.peer +
+                  (request.caller.empty() ? "" : " as " + request.caller));
 }
 
 /// Says once that a thread does not get on, before systemd ends the service.
@@ -43,7 +49,7 @@ void look(Watchdog& watchdog, daemon::Log& log, int& stalled_looks) {
 }
 
 /// Until SIGTERM; SIGHUP reads the settings again.
-void watch(service::Service& service, api::Server& server, daemon::Log& log, const Signals& signals) {
+void watch(service::Service& service, daemon::Log& log, const Signals& signals) {
     constexpr auto tick_interval = std::chrono::seconds{10};
     using Clock = std::chrono::steady_clock;
     Watchdog watchdog{service.hearts()};
@@ -56,7 +62,7 @@ void watch(service::Service& service, api::Server& server, daemon::Log& log, con
         case SIGINT:
             return;
         case SIGHUP:
-            reload(service, server, log);
+            reload(service);
             break;
         default:
             break;
@@ -79,22 +85,31 @@ config::Checked<config::Settings> load_settings(const std::filesystem::path& fil
 
 cli::ExitCode serve(const std::filesystem::path& file, const config::Settings& settings, const Signals& signals) {
     daemon::Log log{settings.logging, daemon::make_log_target(settings.logging.target)};
+    api::Server* running = nullptr;
+    const auto take_over = [&](const config::Settings& next) -> Result<void> {
+        if (auto taken = running->reload(next.http); !taken) {
+            return taken;
+        }
+        log.set_levels(next.logging);
+        return {};
+    };
     auto opened = service::Service::open({settings, [&file] { return load_settings(file); },
                                           [&log](const spool::Event& event) { service::log_event(log, event); },
-                                          LINEFEED_VERSION});
+                                          LINEFEED_VERSION, take_over});
     if (!opened) {
         log.write(LogComponent::service, LogLevel::error, opened.error().message);
         return cli::ExitCode::other;
     }
     service::Service& service = **opened;
-    api::Server server{service, settings};
+    api::Server server{service, settings, [&log](const api::AccessRecord& request) { log_request(log, request); }};
+    running = &server; // nobody reloads before it answers
     if (const auto started = server.start(); !started) {
         log.write(LogComponent::api, LogLevel::error, started.error().message);
         return cli::ExitCode::other;
     }
     service.start();
     daemon::notify_ready("running");
-    watch(service, server, log, signals);
+    watch(service, log, signals);
     daemon::notify_stopping("stopping the lines");
     service.shut_down(); // still answering what it is asked meanwhile
     server.stop();

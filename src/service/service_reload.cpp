@@ -36,6 +36,7 @@ bool concerns_folders(const config::Change& change) {
 } // namespace
 
 Result<std::vector<std::string>> Service::reload(const daemon::Caller& caller) {
+    const std::lock_guard one_at_a_time{reloads_};
     std::vector<LinePtr> gone;
     std::vector<FolderPtr> old_folders;
     bool folders_change = false;
@@ -57,8 +58,11 @@ Result<std::vector<std::string>> Service::reload(const daemon::Caller& caller) {
         if (!against.empty()) {
             return Failure{FailureKind::stopped, "the old settings stay: " + all_of(against)};
         }
-        folders_change = std::ranges::any_of(changes, concerns_folders);
         const auto after = std::make_shared<const config::Settings>(config::without_restart(*before, *read));
+        if (const auto taken = take_over_(*after); !taken) {
+            return Failure{taken.error().kind, "the old settings stay: " + taken.error().message};
+        }
+        folders_change = std::ranges::any_of(changes, concerns_folders);
         {
             const std::lock_guard parts{parts_mutex_};
             settings_ = after;

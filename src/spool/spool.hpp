@@ -126,6 +126,9 @@ public:
     [[nodiscard]] Result<std::vector<Ticket>> begun_jobs();
     /// Writes a ticket, durable at return. The job must be there.
     [[nodiscard]] Result<void> write_ticket(const Ticket& ticket);
+    /// Whether an operator has stopped a printer, durable at return.
+    [[nodiscard]] Result<void> hold_printer(const std::string& printer, bool held);
+    [[nodiscard]] Result<bool> printer_held(const std::string& printer);
     /// A place before all others of the printer's queue, or behind them.
     [[nodiscard]] Result<std::int64_t> first_place(const std::string& printer);
     [[nodiscard]] Result<std::int64_t> last_place(const std::string& printer);

@@ -127,6 +127,29 @@ Result<void> Spool::write_ticket(const Ticket& ticket) {
     return {};
 }
 
+Result<void> Spool::hold_printer(const std::string& printer, bool held) {
+    if (auto writable = state_->check_writable(); !writable) {
+        return writable;
+    }
+    auto statement = state_->database->prepare(held ? "INSERT OR IGNORE INTO held_printers (printer) VALUES (?1)"
+                                                    : "DELETE FROM held_printers WHERE printer = ?1");
+    if (!statement) {
+        return statement.error();
+    }
+    if (auto done = statement->bind(1, printer).run(); !done) {
+        return state_->failed_write(done.error());
+    }
+    return {};
+}
+
+Result<bool> Spool::printer_held(const std::string& printer) {
+    auto statement = state_->database->prepare("SELECT 1 FROM held_printers WHERE printer = ?1");
+    if (!statement) {
+        return statement.error();
+    }
+    return statement->bind(1, printer).step();
+}
+
 namespace {
 
 /// The place of one end of a queue, 0 if it is empty.

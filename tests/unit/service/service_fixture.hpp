@@ -39,7 +39,8 @@ protected:
     /// The settings, with the printers "line1", "line2" … of these addresses, and `more` behind them.
     [[nodiscard]] std::string settings_text(const std::vector<std::string>& addresses, const std::string& of_each = {},
                                             const std::string& more = {}) const {
-        std::string text = "spool: " + (directory_ / "spool.db").string() + "\nlayouts: {serials: {columns: [serial]}}\n";
+        std::string text =
+            "spool: " + (directory_ / "spool.db").string() + "\nlayouts: {serials: {columns: [serial]}}\n";
         text += "printers:\n";
         for (std::size_t i = 0; i < addresses.size(); ++i) {
             text += "  line" + std::to_string(i + 1) + ": {address: \"tcp://" + addresses[i] + "\"" + of_each + "}\n";
@@ -51,7 +52,10 @@ protected:
         const auto load = [this] { return config::parse_settings(text_, directory_ / "linefeed.yaml", {}); };
         auto settings = load();
         ASSERT_TRUE(settings) << config::to_string(settings.error().kept().front());
-        auto service = Service::open({*settings, load, [](const spool::Event&) {}, "test"});
+        const auto take_over = [this](const config::Settings&) {
+            return refusal_.empty() ? Result<void>{} : Failure{FailureKind::usage, refusal_};
+        };
+        auto service = Service::open({*settings, load, [](const spool::Event&) {}, "test", take_over});
         ASSERT_TRUE(service) << service.error().message;
         service_ = std::move(*service);
         service_->start();
@@ -70,9 +74,11 @@ protected:
     /// Imported, and waiting at line1 unless told otherwise.
     spool::JobId import(std::uint32_t count, std::uint32_t first = 1, const std::string& printer = "line1",
                         bool autostart = false) {
-        const auto answer = service_->import(
-            anna, {.file = file("f" + std::to_string(first) + ".csv", count, first), .name = {}, .layout = "serials",
-                   .printer = printer, .autostart = autostart});
+        const auto answer = service_->import(anna, {.file = file("f" + std::to_string(first) + ".csv", count, first),
+                                                    .name = {},
+                                                    .layout = "serials",
+                                                    .printer = printer,
+                                                    .autostart = autostart});
         EXPECT_TRUE(answer && answer->job) << (answer ? answer->report : answer.error().message);
         return answer ? answer->job.value_or(spool::JobId{}) : spool::JobId{};
     }
@@ -111,7 +117,8 @@ protected:
     static inline const daemon::Caller anna{"anna (uid 1000)"};
 
     std::filesystem::path directory_;
-    std::string text_; ///< what a reload reads
+    std::string text_;    ///< what a reload reads
+    std::string refusal_; ///< of those who take over new settings as well; empty = none
     std::unique_ptr<Service> service_;
 };
 
