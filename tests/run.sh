@@ -88,13 +88,13 @@ fuzz() { # all targets at once, each with its own log; what it finds is in build
 }
 
 production() { # a simulation on each core, with seeds of its own
-    local core bad=0 running=()
+    local core bad=0 simulations=()
     for ((core = 1; core <= cores; ++core)); do
         build/release/bin/linefeed_simulation --from "${core}000000000" --hours $((1000 / cores + 1)) > "build/production_$core.log" 2>&1 &
-        running+=($!)
+        simulations+=($!)
     done
-    for core in "${!running[@]}"; do
-        wait "${running[$core]}" || bad=1
+    for core in "${!simulations[@]}"; do
+        wait "${simulations[$core]}" || bad=1
         tail -n 6 "build/production_$((core + 1)).log"
     done
     return "$bad"
@@ -102,7 +102,7 @@ production() { # a simulation on each core, with seeds of its own
 
 mkdir -p build
 groups=(build test lint)
-[[ $long -eq 0 ]] || groups+=(fuzz)
+[[ $long -eq 0 ]] || groups+=(fuzz package)
 stage "packages" deploy/dependencies.sh "${groups[@]}" || finish
 stage "build" build_release || finish
 [[ $long -eq 0 ]] || export LINEFEED_LONG_TESTS=1

@@ -1,5 +1,6 @@
 // The command line of linefeed. CLI11 stays in this file.
 #include "cli/check_config_command.hpp"
+#include "cli/distrust_command.hpp"
 #include "cli/drop_command.hpp"
 #include "cli/ledger_command.hpp"
 #include "cli/print_command.hpp"
@@ -15,6 +16,7 @@
 namespace {
 
 using linefeed::cli::CheckConfigOptions;
+using linefeed::cli::DistrustOptions;
 using linefeed::cli::DropOptions;
 using linefeed::cli::ExitCode;
 using linefeed::daemon::InDoubtPolicy;
@@ -296,6 +298,21 @@ CLI::App& add_check_config(CLI::App& app, CheckConfigOptions& options, std::stri
     return check;
 }
 
+CLI::App& add_distrust(CLI::App& app, DistrustOptions& options, std::string& output) {
+    CLI::App& distrust = *app.add_subcommand(
+        "distrust", "Put every record in doubt that a spool from a backup does not know as printed");
+    distrust.footer(
+        "linefeed-restore does so: what was printed after the backup is not known to it. Then an operator says "
+        "from the\nproducts how far each job came.");
+    distrust.add_option("--spool", options.spool, "Database of jobs and the print ledger")->required();
+    distrust.add_option("--reason", options.reason, "Stands in the ledger with the name of the user")
+        ->required()
+        ->check(
+            [](const std::string& text) { return text.empty() ? std::string{"must not be empty"} : std::string{}; });
+    add_output(distrust, output);
+    return distrust;
+}
+
 ExitCode usage_error(const std::string& problem) {
     std::cerr << "linefeed: " << problem << '\n';
     return ExitCode::usage;
@@ -311,6 +328,7 @@ ExitCode run(int argc, char** argv) {
     LedgerOptions ledger;
     CheckConfigOptions check_config;
     DropOptions drop;
+    DistrustOptions distrust;
     print.spool = jobs.spool = ledger.spool = drop.spool = default_spool();
     RawPrintOptions raw_print;
     RawLedgerOptions raw_ledger;
@@ -319,12 +337,14 @@ ExitCode run(int argc, char** argv) {
     TokenOptions token;
     std::string token_output{"text"};
     std::string check_config_output{"text"};
+    std::string distrust_output{"text"};
     add_print(app, print, raw_print);
     const CLI::App& drop_command = add_drop(app, drop, raw_drop);
     const CLI::App& jobs_command = add_jobs(app, jobs, jobs_output);
     const CLI::App& ledger_command = add_ledger(app, ledger, raw_ledger);
     const CLI::App& token_command = add_token(app, token, token_output);
     const CLI::App& check_config_command = add_check_config(app, check_config, check_config_output);
+    const CLI::App& distrust_command = add_distrust(app, distrust, distrust_output);
     try {
         app.parse(argc, argv);
     } catch (const CLI::Success& success) {
@@ -358,6 +378,10 @@ ExitCode run(int argc, char** argv) {
     if (check_config_command.parsed()) {
         check_config.json = check_config_output == "json";
         return linefeed::cli::run_check_config(check_config);
+    }
+    if (distrust_command.parsed()) {
+        distrust.json = distrust_output == "json";
+        return linefeed::cli::run_distrust(distrust);
     }
     if (const std::string problem = finish_options(print, raw_print); !problem.empty()) {
         return usage_error(problem);

@@ -8,6 +8,10 @@
 namespace linefeed::service {
 
 EventLog::~EventLog() {
+    flush();
+}
+
+void EventLog::flush() {
     store_.call([](spool::Spool&) {}); // behind all that was posted
 }
 

@@ -15,7 +15,7 @@
 
 namespace linefeed::service {
 
-/// Any thread but the feed thread. The store thread must outlive it, and its last events are written by then.
+/// Any thread but the feed thread. The store thread must outlive it.
 class EventLog {
 public:
     /// `listen` hears of each event at once, on the thread where it happens; it must not call back.
@@ -29,6 +29,8 @@ public:
 
     /// Does not wait for the disk.
     void add(spool::Event event);
+    /// Waits until what was added before is written, or could not be.
+    void flush();
 
     /// `on_events` is called when there are events, on any thread, and must not block or call back. The returned number
     /// ends it.

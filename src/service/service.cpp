@@ -128,7 +128,7 @@ void Service::shut_down() {
     for (const LinePtr& line : all) {
         static_cast<void>(line->wait_until_idle());
     }
-    store_.call([](spool::Spool&) {}); // the events of all that as well
+    events_.flush();
 }
 
 void Service::tick() {

@@ -83,7 +83,7 @@ protected:
             run->store.join();
         }
     }
-    /// From push to sync, and how long after the sync before it the push came.
+    /// From push to sync, and how long after the sync before it the push came; long, if there was none yet.
     struct Delay {
         double after_commit_ms = 0;
         double ms = 0;
@@ -92,8 +92,9 @@ protected:
         constexpr double ns_in_ms = 1e6;
         const auto durable = std::ranges::lower_bound(synced_ns_, row_ns);
         const auto next = std::ranges::lower_bound(synced_ns_, pushed_ns);
-        LINEFEED_ASSERT(durable != synced_ns_.end() && next != synced_ns_.begin());
-        return {static_cast<double>(pushed_ns - *std::prev(next)) / ns_in_ms,
+        LINEFEED_ASSERT(durable != synced_ns_.end());
+        const std::int64_t before_ns = next == synced_ns_.begin() ? 0 : *std::prev(next);
+        return {static_cast<double>(pushed_ns - before_ns) / ns_in_ms,
                 static_cast<double>(*durable - pushed_ns) / ns_in_ms};
     }
     std::vector<Delay> delays() {
