@@ -62,12 +62,14 @@ Result<void> Service::recover() {
             if (!facts) {
                 return facts.error();
             }
-            const bool finished = phase_of(*facts, {}) == JobPhase::finished;
+            const JobPhase phase = phase_of(*facts, {});
+            const bool finished = phase == JobPhase::finished;
             if (!finished && ticket.begun) {
                 continue;
             }
             ticket.begun = !finished;
-            ticket.message = finished ? "" : "it was printed from the command line: resume it to go on";
+            ticket.message =
+                phase == JobPhase::stopped ? "it was printed from the command line: resume it to go on" : "";
             if (finished) {
                 ticket.place.reset();
             }
