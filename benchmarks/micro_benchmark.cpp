@@ -107,8 +107,11 @@ public:
             if (const auto* intent = std::get_if<feeder::AskIntent>(&action)) {
                 feeder::Actions none;
                 feeder_.on_durable(intent->through, now_, none);
+            } else if (const auto* send = std::get_if<feeder::SendRecords>(&action)) {
+                printer_.sent = send->range.last().value();
             }
         }
+        LINEFEED_ASSERT(printer_.sent >= printer_.printed + block); // it does refill
         benchmark::DoNotOptimize(actions.size());
     }
 

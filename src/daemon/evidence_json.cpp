@@ -20,33 +20,20 @@ std::string mail_array(const protocol::MailStatus& mail) {
                               mail.last_print_finished ? "1" : "0"});
 }
 
-/// Takes a run start as it is parsed, since a parsed object ends the process when memory runs out (json_text.hpp).
-/// Values of another type than ours are taken for absent.
-class RunStartReader : public nlohmann::json_sax<Json> {
+/// Takes the values of an object as it is parsed, since a parsed object ends the process when memory runs out
+/// (json_text.hpp). Values of another type than ours are taken for absent.
+class ObjectReader : public nlohmann::json_sax<Json> {
 public:
-    [[nodiscard]] std::optional<RunStart> finish() && {
-        return has_printer_ ? std::optional{std::move(start_)} : std::nullopt;
-    }
-
     bool key(std::string& name) override {
         key_ = depth_ == 1 ? name : "";
         return true;
     }
     bool string(std::string& value) override {
-        if (key_ == "printer") {
-            start_.printer = value;
-            has_printer_ = true;
-        } else if (key_ == "serial_number") {
-            start_.serial_number = value;
-        }
+        take_text(key_, value);
         return scalar();
     }
     bool number_unsigned(std::uint64_t value) override {
-        if (key_ == "total_before") {
-            start_.total_before = static_cast<std::uint32_t>(value);
-        } else if (key_ == "last_printed_before") {
-            start_.last_printed_before = RecordNumber{static_cast<std::uint32_t>(value)};
-        }
+        take_number(key_, static_cast<std::uint32_t>(value));
         return scalar();
     }
     bool number_integer(std::int64_t /*value*/) override { return scalar(); }
@@ -63,6 +50,9 @@ public:
     }
 
 private:
+    virtual void take_text(std::string_view /*key*/, std::string& /*value*/) {}
+    virtual void take_number(std::string_view key, std::uint32_t value) = 0;
+
     bool scalar() {
         key_.clear();
         return true;
@@ -76,10 +66,49 @@ private:
         return true;
     }
 
-    RunStart start_;
     std::string key_; ///< of the next value, in the outermost object only
     int depth_ = 0;
+};
+
+class RunStartReader : public ObjectReader {
+public:
+    [[nodiscard]] std::optional<RunStart> finish() && {
+        return has_printer_ ? std::optional{std::move(start_)} : std::nullopt;
+    }
+
+private:
+    void take_text(std::string_view key, std::string& value) override {
+        if (key == "printer") {
+            start_.printer = value;
+            has_printer_ = true;
+        } else if (key == "serial_number") {
+            start_.serial_number = value;
+        }
+    }
+    void take_number(std::string_view key, std::uint32_t value) override {
+        if (key == "total_before") {
+            start_.total_before = value;
+        } else if (key == "last_printed_before") {
+            start_.last_printed_before = RecordNumber{value};
+        }
+    }
+
+    RunStart start_;
     bool has_printer_ = false;
+};
+
+class BrokenOffReader : public ObjectReader {
+public:
+    [[nodiscard]] RecordNumber number() const { return number_; }
+
+private:
+    void take_number(std::string_view key, std::uint32_t value) override {
+        if (key == "broken_off") {
+            number_ = RecordNumber{value};
+        }
+    }
+
+    RecordNumber number_;
 };
 
 } // namespace
@@ -134,7 +163,15 @@ std::string outcome_json(const feeder::Outcome& outcome) {
     if (!outcome.error.none()) {
         json.add("error", outcome.error.raw);
     }
+    if (outcome.broken_off != RecordNumber{}) {
+        json.add("broken_off", outcome.broken_off.value());
+    }
     return json.text();
+}
+
+std::optional<RecordNumber> parse_broken_off(const std::string& outcome) {
+    BrokenOffReader reader;
+    return Json::sax_parse(outcome, &reader) ? std::optional{reader.number()} : std::nullopt;
 }
 
 } // namespace linefeed::daemon

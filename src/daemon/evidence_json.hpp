@@ -27,5 +27,7 @@ struct RunStart {
 [[nodiscard]] std::string mail_json(const protocol::MailStatus& mail);
 [[nodiscard]] std::string settle_json(const feeder::Settle& settle);
 [[nodiscard]] std::string outcome_json(const feeder::Outcome& outcome);
+/// Outcome::broken_off of what outcome_json() wrote; std::nullopt if the text is no JSON.
+[[nodiscard]] std::optional<RecordNumber> parse_broken_off(const std::string& outcome);
 
 } // namespace linefeed::daemon

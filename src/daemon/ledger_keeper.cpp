@@ -71,6 +71,10 @@ Result<std::optional<OpenIssue>> find_open_issue(spool::Spool& spool, spool::Job
         issue.run_range = up_to(issue.run_range, (*stored_job)->records.last());
     }
     issue.facts.last = issue.run_range.last();
+    if (const auto& ended = (*last_run)->ended) {
+        const RecordNumber broken_off = parse_broken_off(ended->entry.evidence).value_or(RecordNumber{});
+        issue.facts.broken_off = issue.records.contains(broken_off) ? broken_off : RecordNumber{};
+    }
     return std::optional<OpenIssue>{issue};
 }
 
@@ -239,9 +243,19 @@ Result<void> LedgerKeeper::settle(const feeder::Settle& settle) {
     return append_verdict(job_, *run_, settle);
 }
 
+/// No run has begun, but it was seen that a print of the earlier one may be broken off.
+Result<void> LedgerKeeper::finish_earlier(const feeder::Outcome& outcome) {
+    const bool news = outcome.broken_off != RecordNumber{} && open_ && outcome.broken_off != open_->facts.broken_off;
+    if (!news) {
+        return {};
+    }
+    const LedgerEntry ended{LedgerKind::run_ended, open_->run, {}, outcome_json(outcome)};
+    return spool_.append(open_->job, {&ended, 1});
+}
+
 Result<void> LedgerKeeper::finish(const feeder::Outcome& outcome) {
     if (!run_) {
-        return {};
+        return finish_earlier(outcome);
     }
     if (const auto committed = commit(); !committed) {
         return committed;

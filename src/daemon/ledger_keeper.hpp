@@ -78,6 +78,7 @@ public:
 
 private:
     [[nodiscard]] Result<void> append_verdict(spool::JobId job, spool::RunId run, const feeder::Settle& settle);
+    [[nodiscard]] Result<void> finish_earlier(const feeder::Outcome& outcome);
     [[nodiscard]] RecordRange known_part(RecordRange range) const;
 
     spool::Spool& spool_;

@@ -16,7 +16,8 @@ constexpr int max_answers_lost = 3;
 Feeder::Feeder(const FeederSettings& settings, const FeederPlan& plan)
     : settings_(settings)
     , plan_(plan)
-    , pacing_(settings.pacing) {}
+    , pacing_(settings.pacing)
+    , broken_off_(plan.open ? plan.open->broken_off : RecordNumber{}) {}
 
 void Feeder::on_machine_status(const protocol::MachineStatus& status, Instant now, Actions& out) {
     answers_lost_ = 0;
@@ -96,6 +97,10 @@ void Feeder::on_machine_status(const protocol::MachineStatus& status, Instant no
 }
 
 void Feeder::on_mail_status(const protocol::MailStatus& status, Instant now, Actions& out) {
+    if (lacks_value(status)) {
+        on_lost_answer(Parameter::SM, now, out);
+        return;
+    }
     mail_answered(now);
     answers_lost_ = 0;
     mail_ = status;
@@ -137,6 +142,13 @@ void Feeder::on_mail_status(const protocol::MailStatus& status, Instant now, Act
     case Phase::ended:
         return;
     }
+}
+
+/// Where `=SM` has six values (protocol, section 5), one with five has lost a TAB on a serial line: others stand in the
+/// place of its values, and the count of PrintGos looks like a print that has finished. Two in a row are meant so.
+bool Feeder::lacks_value(const protocol::MailStatus& status) {
+    const bool lacks = mail_.print_go_count && !status.print_go_count;
+    return !std::exchange(lacked_value_, lacks) && lacks;
 }
 
 /// Only the second of two answers is surely current; a print in progress gets the time to finish, and a flush the time

@@ -156,6 +156,7 @@ private:
     [[nodiscard]] bool waits_for_mail() const;
     [[nodiscard]] bool waits_for_status() const;
     void ask_later(protocol::Parameter what, Instant now);
+    [[nodiscard]] bool lacks_value(const protocol::MailStatus& status);
     void locate_step(Instant now, Actions& out);
     void on_deadline(Instant now, Actions& out);
     [[nodiscard]] bool polls() const { return phase_ == Phase::printing || (phase_ == Phase::starting && !go_due_); }
@@ -258,7 +259,8 @@ private:
     protocol::MailStatus mail_;
     PrinterFacts facts_;
 
-    int mail_reads_ = 0; ///< `=SM` answers in this phase
+    int mail_reads_ = 0;        ///< `=SM` answers in this phase
+    bool lacked_value_ = false; ///< the last `=SM`
     int identity_answers_missing_ = 0;
     Instant identity_asked_at_{};
     Instant identity_answered_at_{}; ///< the first of the answers

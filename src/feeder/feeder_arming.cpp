@@ -147,6 +147,7 @@ void Feeder::on_granted(RecordRange range, RecordNumber durable_through, Instant
     confirmed_through_ = reported_through_ = range.first().previous();
     total_before_ = facts_.total_prints;
     left_over_ = mail_.last_printed;
+    broken_off_ = RecordNumber{}; // of the earlier run, which is settled
     enter(Phase::flushing, now, settings_.flush_timeout);
     out.push_back(Command{protocol::Action::flush_fifo});
     ask(Parameter::SM, now, out);

@@ -144,7 +144,7 @@ void Feeder::end(OutcomeCode code, Actions& out) {
     retry_at_.reset();
     deadline_.reset();
     go_due_.reset();
-    out.push_back(End{{code, status_.machine, status_.error, any_sent_}});
+    out.push_back(End{{code, status_.machine, status_.error, any_sent_, broken_off_}});
 }
 
 } // namespace linefeed::feeder

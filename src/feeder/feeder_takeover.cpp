@@ -20,12 +20,13 @@ constexpr int max_takeover_reads = 6;
 
 /// The printer prints the earlier run and reports a record of it: it may be taken over. A number that stood there
 /// before the run says nothing. It has not been stopped meanwhile, and so has left nothing out, by its counter; if it
-/// has none, by the stop point that stands.
+/// has none, by the stop point that stands. And no print of it was broken off, as far as anybody has seen.
 bool Feeder::may_take_over() const {
     const OpenRun& run = *plan_.open;
     const bool left_over = run.printed_through < run.first && mail_.last_printed == run.last_printed_before;
     const bool vouched_for = prints_of_earlier_run().value_or(0) != 0 || mail_.stop_at == run.last;
-    return plan_.take_over && mail_.last_printed >= run.first && !left_over && mail_.entries > 0 && vouched_for;
+    return plan_.take_over && mail_.last_printed >= run.first && !left_over && mail_.entries > 0 && vouched_for &&
+           broken_off_ == RecordNumber{};
 }
 
 void Feeder::begin_takeover(Instant now, Actions& out) {

@@ -42,6 +42,9 @@ struct Outcome {
     protocol::PrinterError error{};                                   ///< as last reported
     /// At least one record of this run may have gone out; if not, the ledger calls those it had granted unused.
     bool issued = true;
+    /// A print that had not finished when the printer stood, as last seen; 0 = none. If the run stays open, no later
+    /// answer tells it: the printer may be started again behind it.
+    RecordNumber broken_off{};
 
     friend bool operator==(const Outcome&, const Outcome&) = default;
     friend std::ostream& operator<<(std::ostream& out, const Outcome& outcome);

@@ -33,6 +33,8 @@ struct OpenRun {
     RecordNumber last_printed_before; ///< `=SM`, last printed record number as the run began: left over from before
     /// The last record of the run; absent = unknown. Behind it an end marker may have been printed.
     std::optional<RecordNumber> last{};
+    /// Evidence::broken_off as it was last seen; 0 = none.
+    RecordNumber broken_off{};
 
     friend bool operator==(const OpenRun&, const OpenRun&) = default;
 };

@@ -204,33 +204,47 @@ Result<std::vector<LedgerRow>> Spool::doubt_rows(JobId job, RunId run) {
     return rows;
 }
 
-Result<std::optional<Spool::LastRun>> Spool::last_run(JobId job) {
-    static const std::string sql =
-        std::string{select_ledger} + "WHERE l.job = ?1 AND l.kind = 'run_started' ORDER BY l.sequence DESC LIMIT 1";
-    auto started = state_->database->prepare(sql.c_str());
-    if (!started) {
-        return started.error();
+namespace {
+
+/// The first row that `sql` finds for `id`.
+Result<std::optional<LedgerRow>> first_row(Database& database, const std::string& sql, std::int64_t id) {
+    auto statement = database.prepare(sql.c_str());
+    if (!statement) {
+        return statement.error();
     }
-    const auto found = started->bind(1, static_cast<std::int64_t>(job)).step();
+    const auto found = statement->bind(1, id).step();
     if (!found) {
         return found.error();
     }
     if (!*found) {
-        return std::optional<LastRun>{};
+        return std::optional<LedgerRow>{};
     }
-    auto row = ledger_row_from(*started, state_->database->path());
+    auto row = ledger_row_from(*statement, database.path());
     if (!row) {
         return row.error();
     }
-    auto ends = state_->database->prepare("SELECT 1 FROM ledger WHERE run = ?1 AND kind = 'run_ended' LIMIT 1");
-    if (!ends) {
-        return ends.error();
+    return std::optional{std::move(*row)};
+}
+
+} // namespace
+
+Result<std::optional<Spool::LastRun>> Spool::last_run(JobId job) {
+    static const std::string last_start =
+        std::string{select_ledger} + "WHERE l.job = ?1 AND l.kind = 'run_started' ORDER BY l.sequence DESC LIMIT 1";
+    static const std::string last_end =
+        std::string{select_ledger} + "WHERE l.run = ?1 AND l.kind = 'run_ended' ORDER BY l.sequence DESC LIMIT 1";
+    auto started = first_row(*state_->database, last_start, static_cast<std::int64_t>(job));
+    if (!started) {
+        return started.error();
     }
-    const auto ended = ends->bind(1, static_cast<std::int64_t>(row->entry.run)).step();
+    if (!*started) {
+        return std::optional<LastRun>{};
+    }
+    auto ended = first_row(*state_->database, last_end, static_cast<std::int64_t>((*started)->entry.run));
     if (!ended) {
         return ended.error();
     }
-    return std::optional{LastRun{std::move(*row), *ended}};
+    return std::optional{LastRun{std::move(**started), std::move(*ended)}};
 }
 
 } // namespace linefeed::spool

@@ -1,5 +1,6 @@
 """linefeedd as a process, its API over the Unix socket, and the operator of the tests, who does what people at the line do."""
 
+import contextlib
 import grp
 import http.client
 import json
@@ -172,7 +173,11 @@ class Operator:
             if problem.status not in (409, 502, 503):
                 raise
             if state["error"]:
-                self.service.post(f"printers/{self.printer}/acknowledge", {"error": state["error"]["code"]})
+                self.acknowledge(state["error"]["code"])
+
+    def acknowledge(self, error):
+        with contextlib.suppress(Problem):  # it shows another, or none any more
+            self.service.post(f"printers/{self.printer}/acknowledge", {"error": error})
 
     def settle(self, job):
         """By the products: numbers begin anew with each job, so the texts tell which is which."""

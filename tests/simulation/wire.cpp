@@ -81,6 +81,7 @@ void Wire::damage(std::string& bytes, bool to_printer) {
     } else {
         bytes.erase(at, 1);
     }
+    context_.trace.say(context_.now, to_printer ? "damaged to printer" : "damaged to host", bytes);
     ++context_.counts.bytes_damaged;
 }
 

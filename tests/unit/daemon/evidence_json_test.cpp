@@ -83,5 +83,20 @@ TEST(EvidenceJson, shouldKeepTheErrorNumberAsThePrinterSentIt) {
         R"({"outcome":"printer_error","machine":"ready for print start","error":-1711274809})");
 }
 
+TEST(EvidenceJson, shouldReadBackThatAPrintMayBeBrokenOff) {
+    feeder::Outcome outcome{feeder::OutcomeCode::link_lost,
+                            protocol::MachineState::ready_to_print,
+                            {-1711274809},
+                            true,
+                            RecordNumber{4294967295}};
+    EXPECT_EQ(outcome_json(outcome), R"({"outcome":"link_lost","machine":"ready for print start","error":-1711274809,)"
+                                     R"("broken_off":4294967295})");
+    EXPECT_EQ(parse_broken_off(outcome_json(outcome)), RecordNumber{4294967295});
+    outcome.broken_off = RecordNumber{};
+    EXPECT_EQ(parse_broken_off(outcome_json(outcome)), RecordNumber{});
+    EXPECT_EQ(parse_broken_off(R"({"broken_off":"7"})"), RecordNumber{});
+    EXPECT_EQ(parse_broken_off("{"), std::nullopt);
+}
+
 } // namespace
 } // namespace linefeed::daemon

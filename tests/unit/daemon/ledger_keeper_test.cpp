@@ -174,6 +174,31 @@ TEST_F(LedgerKeeperTest, shouldFindWhatACrashLeftOpen) {
                                              RecordNumber{77}, RecordNumber{1999}}));
 }
 
+TEST_F(LedgerKeeperTest, shouldFindAPrintThatMayBeBrokenOffInWhatARunLeftOpen) {
+    const auto found = [this] { return find_open_issue(*spool_, job_).value()->facts.broken_off; };
+    feeder::Outcome outcome = ended(feeder::OutcomeCode::no_answer);
+    {
+        LedgerKeeper ledger = keeper();
+        ASSERT_TRUE(ledger.grant(begin()));
+        ledger.printed(RecordNumber{130}, {});
+        outcome.broken_off = RecordNumber{140};
+        ASSERT_TRUE(ledger.finish(outcome));
+    }
+    EXPECT_EQ(found(), RecordNumber{140});
+    const std::size_t rows = kinds().size();
+    ASSERT_TRUE(keeper().finish(outcome));
+    ASSERT_TRUE(keeper().finish(ended(feeder::OutcomeCode::unreachable)));
+    EXPECT_EQ(kinds().size(), rows) << "nothing new was seen";
+    outcome.broken_off = RecordNumber{145};
+    ASSERT_TRUE(keeper().finish(outcome));
+    EXPECT_EQ(found(), RecordNumber{145}) << "another look, and no end of it either";
+    feeder::Settle settle = verdict(closed(131, 150), {}, {});
+    settle.earlier_run = settle.provisional = true;
+    ASSERT_TRUE(keeper().settle_earlier(settle));
+    EXPECT_EQ(found(), RecordNumber{}) << "the ledger knows its fate";
+    EXPECT_TRUE(spool_->verify_ledger());
+}
+
 TEST_F(LedgerKeeperTest, shouldFindTheEndOfACrashedRunWhenTheImportHasReachedIt) {
     RecordPage page{RecordNumber{1}, {}, {}};
     for (std::uint32_t number = 1; number <= 300; ++number) {

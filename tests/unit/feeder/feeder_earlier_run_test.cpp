@@ -208,6 +208,64 @@ TEST(FeederEarlierRun, shouldDoubtAPrintThatNeverFinishes) {
     EXPECT_EQ(story.take().find("settle the earlier run: printed none, in doubt 150-150, unused 151-200"), 0U);
 }
 
+TEST(FeederEarlierRun, shouldNotTakeAnAnswerThatHasLostATabForAFinishedPrint) {
+    Story story{quick_settings(), plan_with(earlier_run())};
+    story.print_gos = 77; // in every answer of this printer
+    story.identify();
+    story.sm(0, 150, 0, false);
+    story.sm(0, 150, 0, false);
+    story.wait(milliseconds{20});
+    story.take();
+    story.print_gos.reset();
+    story.sm(0, 150, 0);
+    story.expect("?SM");
+    story.print_gos = 77;
+    story.sm(0, 150, 0, false);
+    story.expect(""); // it still gets time to finish
+
+    story.wait(milliseconds{20});
+    story.take();
+    story.print_gos.reset();
+    story.sm(0, 150, 0);
+    story.expect("?SM");
+    story.sm(0, 150, 0); // it means that
+    story.expect("?CC");
+}
+
+TEST(FeederEarlierRun, shouldDoubtAPrintThatWasSeenBrokenOffBeforeThePrinterPrintedOn) {
+    OpenRun run = earlier_run();
+    run.broken_off = RecordNumber{110};
+    Story story{quick_settings(), plan_with(run)};
+    story.identify();
+    story.locate(150, 950);
+    story.expect("settle the earlier run so far: printed 101-109 by mail status and total print counter");
+    story.clear_fifo(150, true, 950);
+    EXPECT_EQ(story.take().find("settle the earlier run: printed none, in doubt 110-150, unused 151-200"), 0U);
+}
+
+TEST(FeederEarlierRun, shouldBelieveThatAPrintHasFinishedSinceTheEarlierRunWasLost) {
+    OpenRun run = earlier_run();
+    run.broken_off = RecordNumber{150};
+    Story story{quick_settings(), plan_with(run)};
+    story.identify();
+    story.locate(150, 950);
+    story.expect("settle the earlier run so far: printed 101-150 by mail status and total print counter");
+}
+
+TEST(FeederEarlierRun, shouldForgetAnUnfinishedPrintThatIsNotOfTheNewRun) {
+    Story story;
+    story.identify();
+    story.sm(0, 101, 0, false); // printed before, and released by an operator
+    story.sm(0, 101, 0, false);
+    story.wait(seconds{2});
+    story.sm(0, 101, 0, false);
+    story.cc(1000);
+    story.granted();
+    story.take();
+    story.link_lost();
+    EXPECT_EQ(std::get<End>(story.actions[0]).outcome.broken_off, RecordNumber{});
+}
+
 TEST(FeederEarlierRun, shouldHaltAPrinterThatPrintsTheEarlierRunAndFlushNothing) {
     Story story{quick_settings(), plan_with(earlier_run())};
     story.identify(State::printing);

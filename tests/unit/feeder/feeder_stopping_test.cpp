@@ -162,6 +162,21 @@ TEST(FeederStopping, shouldDoubtAPrintThatSomebodyBrokeOffBeforePrintingOn) {
         ended(OutcomeCode::stopped_at_printer));
 }
 
+TEST(FeederStopping, shouldSayOfWhatItLeavesOpenThatAPrintMayBeBrokenOff) {
+    for (const bool finished : {false, true}) {
+        Story story = reach(Phase::stopping);
+        story.rs(State::ready_to_print);
+        story.rs(State::ready_to_print);
+        story.sm(0, 102, 0, false);
+        story.sm(0, 102, 0, false);
+        story.wait(milliseconds{20});
+        story.sm(0, 102, 0, finished);
+        story.take();
+        story.link_lost();
+        EXPECT_EQ(std::get<End>(story.actions[0]).outcome.broken_off, RecordNumber{finished ? 0U : 102U});
+    }
+}
+
 TEST(FeederStopping, shouldReportAnOpenCover) {
     Story story = reach(Phase::printing);
     story.rs(State::ready_to_print, 0, true);

@@ -223,6 +223,13 @@ TEST(FeederTakeover, shouldHaltAPrinterWhoseNumberStoodThereBeforeTheRun) {
     found_printing(plan).expect("?SM"); // once a record is confirmed, the number is of this run
 }
 
+TEST(FeederTakeover, shouldHaltWhenAPrintMayBeBrokenOff) {
+    FeederPlan plan = takeover_plan();
+    plan.open->broken_off = RecordNumber{149};
+    Story story = found_printing(plan);
+    story.expect(halted);
+}
+
 TEST(FeederTakeover, shouldDoWithoutTheCounter) {
     Story story{quick_settings(), takeover_plan()};
     story.reported_depth = 16;

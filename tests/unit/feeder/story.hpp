@@ -69,7 +69,8 @@ public:
     void sm(std::uint32_t entries, std::uint32_t last_printed, std::uint32_t stop_at, bool finished = true) {
         now += answer_time;
         feeder.on_mail_status(
-            {reported_depth, entries, RecordNumber{last_printed}, RecordNumber{stop_at}, finished, {}}, now, actions);
+            {reported_depth, entries, RecordNumber{last_printed}, RecordNumber{stop_at}, finished, print_gos}, now,
+            actions);
     }
     /// Without a total as often as it is asked for.
     void cc(std::optional<std::uint32_t> total) {
@@ -219,6 +220,7 @@ public:
     Duration answer_time = std::chrono::milliseconds{5};
     Actions actions;
     std::uint32_t reported_depth = depth;
+    std::optional<std::uint32_t> print_gos; ///< sixth value of `=SM`; absent: it has five
     Feeder feeder;
 };
 

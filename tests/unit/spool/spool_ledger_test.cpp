@@ -215,7 +215,9 @@ TEST_F(SpoolLedgerTest, shouldKnowTheNewestRunAndWhetherItEnded) {
     EXPECT_EQ(spool->last_run(job.id).value()->started.entry.run, first);
     EXPECT_FALSE(spool->last_run(job.id).value()->ended);
     ASSERT_TRUE(append(*spool, job.id, {{LedgerKind::run_ended, first, {}, R"({"why":"stop"})"}}));
-    EXPECT_TRUE(spool->last_run(job.id).value()->ended);
+    EXPECT_EQ(spool->last_run(job.id).value()->ended->entry.evidence, R"({"why":"stop"})");
+    ASSERT_TRUE(append(*spool, job.id, {{LedgerKind::run_ended, first, {}, R"({"why":"again"})"}}));
+    EXPECT_EQ(spool->last_run(job.id).value()->ended->entry.evidence, R"({"why":"again"})") << "the newest";
     const RunId second = begin_run();
     EXPECT_EQ(spool->last_run(job.id).value()->started.entry.run, second);
     EXPECT_FALSE(spool->last_run(job.id).value()->ended);
