@@ -22,6 +22,7 @@ ALTER TABLE ledger_of_003 RENAME TO ledger;
 CREATE INDEX ledger_by_job ON ledger (job);
 CREATE INDEX ledger_run_starts ON ledger (job) WHERE kind = 'run_started';
 CREATE INDEX ledger_run_ends ON ledger (run) WHERE kind = 'run_ended';
+CREATE INDEX ledger_doubts ON ledger (run) WHERE kind = 'in_doubt'; -- few: a doubt is judged without reading its run
 
 CREATE TRIGGER ledger_rows_follow_each_other BEFORE INSERT ON ledger
     WHEN NEW.sequence <> (SELECT ifnull(max(sequence), 0) + 1 FROM ledger)
@@ -46,6 +47,11 @@ CREATE TABLE tickets (
 ) STRICT;
 CREATE INDEX tickets_in_queues ON tickets (printer, place) WHERE place IS NOT NULL;
 CREATE INDEX tickets_begun ON tickets (printer) WHERE begun = 1;
+
+-- Stopped by an operator: nothing starts there by itself until somebody starts a job.
+CREATE TABLE held_printers (
+    printer TEXT PRIMARY KEY -- name in the settings
+) STRICT, WITHOUT ROWID;
 
 CREATE TABLE events (
     id      INTEGER PRIMARY KEY AUTOINCREMENT, -- never used again: clients go on behind the last one they have seen

@@ -103,10 +103,17 @@ void add_service(Families& families, daemon::Operations& operations) {
 void add_printer_states(Families& families, const std::vector<daemon::PrinterView>& printers) {
     using View = daemon::PrinterView;
     using Number = std::optional<double>;
-    printer_gauge(families, printers, "linefeed_printer_up", "Whether the printer is connected and shows no error.",
-                  [](const View& v) -> Number { return v.link == daemon::LinkState::up && !shows_error(v) ? 1 : 0; });
-    printer_gauge(families, printers, "linefeed_printer_link_up", "Whether the printer is connected.",
-                  [](const View& v) -> Number { return v.link == daemon::LinkState::up ? 1 : 0; });
+    // Nobody is connected to a printer with which nothing is done: that is no fault.
+    const auto in_use = [](const View& v, bool good) {
+        return v.phase == daemon::PrinterPhase::idle ? Number{} : Number{good ? 1 : 0};
+    };
+    printer_gauge(families, printers, "linefeed_printer_up",
+                  "Whether the printer is connected and shows no error; none while it is idle.", [&](const View& v) {
+                      return in_use(v, v.link == daemon::LinkState::up && !shows_error(v));
+                  });
+    printer_gauge(families, printers, "linefeed_printer_link_up",
+                  "Whether the printer is connected; none while it is idle.",
+                  [&](const View& v) { return in_use(v, v.link == daemon::LinkState::up); });
     printer_gauge(families, printers, "linefeed_printer_printing", "Whether linefeed prints on it.",
                   [](const View& v) -> Number { return v.phase == daemon::PrinterPhase::printing ? 1 : 0; });
     printer_gauge(families, printers, "linefeed_printer_error_code", "The number of the pending error; 0 = none.",

@@ -2,6 +2,8 @@
 #include "api/handlers.hpp"
 #include "api/views.hpp"
 
+#include <limits>
+
 namespace linefeed::api::handlers {
 
 namespace {
@@ -155,6 +157,7 @@ Outcome settle_job(const Request& request, Services& services) {
     const auto policy = body->text("in_doubt");
     settle.last_printed = body->text("last_printed");
     settle.printed = body->text("printed");
+    settle.as_of = body->number("as_of", 0, std::numeric_limits<std::int64_t>::max());
     if (const auto right = body->finish(); !right) {
         return right.error();
     }

@@ -119,6 +119,7 @@ Json to_json(const daemon::PrinterView& printer) {
             {"job", number_or_null(printer.job)},
             {"queue", std::move(queue)},
             {"autostart", printer.autostart},
+            {"held", printer.held},
             {"figures", figures_json(printer.figures)},
             {"warnings", std::move(warnings)},
             {"heard", heard ? Json(rfc3339(printer.heard_ns)) : Json(nullptr)},
@@ -166,7 +167,10 @@ Json to_json(const daemon::DoubtView::Record& record) {
 }
 
 Json to_json(const daemon::DoubtView& doubt) {
-    return {{"count", doubt.count.value()}, {"records", items_json(doubt.records)}, {"hole", text_or_null(doubt.hole)}};
+    return {{"count", doubt.count.value()},
+            {"records", items_json(doubt.records)},
+            {"hole", text_or_null(doubt.hole)},
+            {"as_of", doubt.as_of}};
 }
 
 Json to_json(const daemon::ImportAnswer& answer) {

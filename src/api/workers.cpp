@@ -18,7 +18,7 @@ constexpr std::size_t threads_of(Lane lane) {
     case Lane::slow:
         return 2;
     case Lane::stop:
-        return 4;
+        return 8;
     case Lane::import:
     case Lane::disk:
         return 1;

@@ -1,7 +1,7 @@
 #include "daemon/doubt_evidence.hpp"
 
-#include "daemon/record_ranges.hpp"
 #include "daemon/evidence_json.hpp"
+#include "daemon/record_ranges.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -57,28 +57,19 @@ struct DoubtRows {
 };
 
 Result<DoubtRows> find_rows(spool::Spool& spool, spool::JobId job, const spool::LedgerSegment& segment) {
-    constexpr std::size_t rows_at_once = 4096;
+    auto rows = spool.doubt_rows(job, segment.run);
+    if (!rows) {
+        return rows.error();
+    }
     DoubtRows found;
-    for (std::int64_t after = static_cast<std::int64_t>(segment.run) - 1;;) { // a run is named by its first row
-        const auto rows = spool.ledger_rows(job, after, rows_at_once);
-        if (!rows) {
-            return rows.error();
-        }
-        for (const LedgerRow& row : *rows) {
-            after = row.sequence;
-            if (row.entry.run != segment.run) {
-                continue;
-            }
-            if (row.entry.kind == LedgerKind::run_started) {
-                found.run_started = row;
-            } else if (row.entry.kind == LedgerKind::in_doubt && row.entry.range.contains(segment.range.first())) {
-                found.in_doubt = row;
-            }
-        }
-        if (rows->size() < rows_at_once) {
-            return found;
+    for (LedgerRow& row : *rows) {
+        if (row.entry.kind == LedgerKind::run_started) {
+            found.run_started = std::move(row);
+        } else if (row.entry.range.contains(segment.range.first())) {
+            found.in_doubt = std::move(row);
         }
     }
+    return found;
 }
 
 /// The prints that the counter has seen since the run began; absent = it does not tell: not reported, of another

@@ -72,6 +72,7 @@ struct DoubtView {
     RecordCount count;
     /// Why the last product does not tell which of them are printed; empty = it does.
     std::string hole;
+    std::int64_t as_of = 0; ///< what of the ledger is seen here: for SettleRequest
 };
 
 enum class LinkState { down, connecting, up };
@@ -118,6 +119,7 @@ struct PrinterView {
     PrinterFigures figures;
     std::vector<std::string> warnings; ///< one line each: what and what to do
     std::int64_t heard_ns = 0;         ///< wall time of the last frame; 0 = never
+    bool held = false; ///< an operator has stopped it: nothing starts by itself until somebody starts a job
 };
 
 enum class Severity { ok, warning, problem };
@@ -200,6 +202,9 @@ struct SettleRequest {
     std::optional<Policy> policy{};
     std::optional<std::string> last_printed{}; ///< number or text of the record on the last product
     std::optional<std::string> printed{};      ///< "N-M,N" or "none"
+    /// DoubtView::as_of of what the operator has seen: refused if anything else is in doubt by now. Absent = what is in
+    /// doubt now, whatever that is.
+    std::optional<std::int64_t> as_of{};
 };
 
 struct ReprintRequest {
@@ -304,9 +309,10 @@ public:
     /// Starts, or goes on with, a job that is ready, queued or stopped; returns once the start has begun. The
     /// preflight's findings are events, and JobView::message.
     [[nodiscard]] virtual Result<void> start(const Caller& caller, spool::JobId id) = 0;
-    /// The first of the printer's queue that can be started or resumed.
+    /// The first of the printer's queue. As start(), it ends what stop() has begun.
     [[nodiscard]] virtual Result<spool::JobId> start_next(const Caller& caller, std::string_view printer) = 0;
-    /// Stops what the printer prints, and returns when the truth is in the ledger.
+    /// Stops what the printer prints, and returns when the truth is in the ledger. From now on nothing starts there by
+    /// itself, until somebody starts a job; also after a restart.
     [[nodiscard]] virtual Result<void> stop(const Caller& caller, std::string_view printer) = 0;
     /// Not while it prints. It leaves its queue.
     [[nodiscard]] virtual Result<void> cancel(const Caller& caller, spool::JobId id) = 0;

@@ -161,8 +161,8 @@ void add_rows(const spool::LedgerSegment& segment, const std::vector<RecordRange
 
 } // namespace
 
-Result<void> settle_by_operator(spool::Spool& spool, const spool::Job& job, const OperatorWord& word,
-                                const std::string& who) {
+Result<std::vector<LedgerEntry>> rows_by_operator(spool::Spool& spool, const spool::Job& job, const OperatorWord& word,
+                                                  const std::string& who) {
     LINEFEED_ASSERT(word.given());
     const auto doubt = doubt_evidence(spool, job);
     if (!doubt) {
@@ -170,7 +170,7 @@ Result<void> settle_by_operator(spool::Spool& spool, const spool::Job& job, cons
     }
     std::vector<LedgerEntry> entries;
     if (doubt->segments.empty()) {
-        return {};
+        return entries;
     }
     if (word.last_printed.empty() && !word.printed) {
         const bool skip = word.policy == InDoubtPolicy::skip;
@@ -178,7 +178,7 @@ Result<void> settle_by_operator(spool::Spool& spool, const spool::Job& job, cons
             entries.push_back({skip ? LedgerKind::skipped : LedgerKind::released, segment.run, segment.range,
                                evidence(who, skip ? "do not print again" : "print again")});
         }
-        return spool.append(job.id, entries);
+        return entries;
     }
     const auto printed =
         word.printed ? printed_by_name(*doubt, *word.printed) : printed_by_last(spool, job, *doubt, word);
@@ -190,7 +190,16 @@ Result<void> settle_by_operator(spool::Spool& spool, const spool::Job& job, cons
     for (const spool::LedgerSegment& segment : doubt->segments) {
         add_rows(segment, *printed, said, entries);
     }
-    return spool.append(job.id, entries);
+    return entries;
+}
+
+Result<void> settle_by_operator(spool::Spool& spool, const spool::Job& job, const OperatorWord& word,
+                                const std::string& who) {
+    const auto rows = rows_by_operator(spool, job, word, who);
+    if (!rows) {
+        return rows.error();
+    }
+    return rows->empty() ? Result<void>{} : spool.append(job.id, *rows);
 }
 
 } // namespace linefeed::daemon

@@ -8,6 +8,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace linefeed::daemon {
 
@@ -29,11 +30,15 @@ struct OperatorWord {
     [[nodiscard]] bool given() const { return policy != InDoubtPolicy::ask || !last_printed.empty() || printed; }
 };
 
-/// Settles every record in doubt of the job by the word of `who`, durable at return; nothing is written if it fails. FailureKind::usage,
-/// with what to say instead, if
+/// The rows that settle every record in doubt of the job by the word of `who`. Reads each of those records at most
+/// once: that may be millions. FailureKind::usage, with what to say instead, if
 /// - last_printed is neither one of the records in doubt nor the one before the first of them, or the text of several,
 /// - last_printed is said although records may have been left out before it, or the total print counter contradicts it,
 /// - printed names a record twice, or one that is not in doubt.
+[[nodiscard]] Result<std::vector<spool::LedgerEntry>>
+rows_by_operator(spool::Spool& spool, const spool::Job& job, const OperatorWord& word, const std::string& who);
+
+/// Appends them, durable at return; nothing is written if it fails.
 [[nodiscard]] Result<void> settle_by_operator(spool::Spool& spool, const spool::Job& job, const OperatorWord& word,
                                               const std::string& who);
 

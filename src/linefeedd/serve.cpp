@@ -1,5 +1,6 @@
 #include "linefeedd/serve.hpp"
 
+#include "api/core.hpp"
 #include "api/server.hpp"
 #include "daemon/log.hpp"
 #include "daemon/service_manager.hpp"
@@ -19,8 +20,20 @@ namespace {
 
 void reload(service::Service& service) {
     daemon::notify_reloading();
-    (void)service.reload({"linefeedd (SIGHUP)"}); // an event tells what came of it
+    static_cast<void>(service.reload({"linefeedd (SIGHUP)"})); // an event tells what came of it
     daemon::notify_ready("running");
+}
+
+/// Who was refused leaves a trace; what changes something is in the audit log.
+void log_request(daemon::Log& log, const api::AccessRecord& request) {
+    constexpr int unauthorized = 401;
+    constexpr int forbidden = 403;
+    constexpr int first_failure = 500;
+    const bool refused = request.status == unauthorized || request.status == forbidden;
+    const LogLevel level = refused || request.status >= first_failure ? LogLevel::warning : LogLevel::debug;
+    log.write(LogComponent::api, level,
+              request.method + ' ' + request.target + ": " + std::to_string(request.status) + ", from " + request.peer +
+                  (request.caller.empty() ? "" : " as " + request.caller));
 }
 
 /// Says once that a thread does not get on, before systemd ends the service.
@@ -89,7 +102,7 @@ cli::ExitCode serve(const std::filesystem::path& file, const config::Settings& s
         return cli::ExitCode::other;
     }
     service::Service& service = **opened;
-    api::Server server{service, settings};
+    api::Server server{service, settings, [&log](const api::AccessRecord& request) { log_request(log, request); }};
     told = &server;
     if (const auto started = server.start(); !started) {
         log.write(LogComponent::api, LogLevel::error, started.error().message);

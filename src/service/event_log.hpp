@@ -1,5 +1,5 @@
-// What happens in the service, for those who watch it: told at once to the log, and to everybody else when it is durable,
-// so that nobody ever sees an event whose number another one gets after a crash.
+// What happens in the service, for those who watch it: told at once to the log, and to everybody else when it is
+// durable, so that nobody ever sees an event whose number another one gets after a crash.
 #pragma once
 
 #include "daemon/store_thread.hpp"

@@ -195,8 +195,8 @@ void Folder::note(const std::string& name, const std::string& words) {
 
 bool Folder::progress(const std::string& name, std::uint64_t rows, double fraction) {
     const std::lock_guard lock{mutex_};
-    view_.message = (rows == 0 ? "reading " : "importing ") + name + ", " +
-                    std::to_string(static_cast<int>(fraction * 100)) + " %";
+    view_.message =
+        (rows == 0 ? "reading " : "importing ") + name + ", " + std::to_string(static_cast<int>(fraction * 100)) + " %";
     return !closing_;
 }
 

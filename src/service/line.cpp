@@ -11,10 +11,11 @@ namespace linefeed::service {
 using daemon::JobPhase;
 using daemon::PrinterPhase;
 
-Line::Line(const LineServices& services, std::string printer, SharedSettings settings)
+Line::Line(const LineServices& services, std::string printer, SharedSettings settings, bool held)
     : services_(services)
     , printer_(std::move(printer))
     , settings_(std::move(settings))
+    , held_(held)
     , thread_([this] { serve(); }) {}
 
 Line::~Line() {
@@ -37,14 +38,18 @@ SharedSettings Line::settings() const {
     return settings_;
 }
 
-Result<void> Line::start(spool::JobId job) {
+Result<void> Line::start(spool::JobId job, StartedBy who) {
     {
         const std::lock_guard lock{mutex_};
+        if (held_ && who == StartedBy::itself) {
+            return Failure{FailureKind::stopped, "printer " + printer_ + " was stopped by an operator"};
+        }
         if (active_ || closing_) {
             return Failure{FailureKind::stopped,
                            "printer " + printer_ +
                                (active_ ? " is at " + name_of(*active_) + ": stop it first" : " is being taken away")};
         }
+        held_ = false;
         active_ = job;
         ++orders_;
         begun_ = false;
@@ -62,6 +67,19 @@ void Line::request_stop() {
     if (run_ != nullptr) {
         run_->request_stop();
     }
+}
+
+void Line::hold() {
+    {
+        const std::lock_guard lock{mutex_};
+        held_ = true;
+    }
+    request_stop();
+}
+
+bool Line::held() const {
+    const std::lock_guard lock{mutex_};
+    return held_;
 }
 
 std::optional<Ending> Line::wait_until_idle() {
@@ -181,7 +199,8 @@ daemon::PrinterView Line::view() {
         view.firmware = heard_.version->firmware;
     }
     view.total_prints = heard_.total_prints;
-    view.panel_suspended = panel_held_;
+    view.panel_suspended = panel_ && panel_->held();
+    view.held = held_;
     if (const config::ErrorEntry* const entry = view.error.none() ? nullptr : settings_->errors.find(view.error)) {
         view.error_meaning = entry->meaning;
         view.error_advice = entry->advice;
@@ -199,11 +218,8 @@ daemon::PrinterView Line::view() {
 
 void Line::event(std::string_view kind, std::optional<spool::JobId> job, std::string message,
                  std::optional<RecordNumber> record) {
-    services_.events.add({.kind = std::string{kind},
-                          .printer = printer_,
-                          .job = job,
-                          .record = record,
-                          .message = std::move(message)});
+    services_.events.add(
+        {.kind = std::string{kind}, .printer = printer_, .job = job, .record = record, .message = std::move(message)});
 }
 
 } // namespace linefeed::service

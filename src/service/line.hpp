@@ -3,15 +3,15 @@
 #pragma once
 
 #include "config/settings.hpp"
+#include "daemon/job_facts.hpp"
 #include "daemon/job_run.hpp"
 #include "daemon/operations.hpp"
+#include "daemon/other_jobs.hpp"
 #include "daemon/preflight.hpp"
 #include "daemon/printer_commands.hpp"
 #include "service/event_log.hpp"
-#include "daemon/job_facts.hpp"
 #include "service/spool_access.hpp"
 
-#include <atomic>
 #include <condition_variable>
 #include <functional>
 #include <memory>
@@ -44,14 +44,17 @@ struct LineServices {
 struct Ending {
     spool::JobId job{};
     feeder::Outcome outcome;
-    std::string words;   ///< why, and what to do
+    std::string words; ///< why, and what to do
     bool said = false; ///< all is in the words: those of the outcome are not needed
 };
 
-/// Flow: construct; start() and stop() as the operator wants. Destroying it stops the line and waits for the truth.
+enum class StartedBy { person, itself };
+
+/// `held` as in Line::hold(). Flow: construct; start() and stop() as the operator wants. Destroying it stops the line
+/// and waits for the truth.
 class Line {
 public:
-    Line(const LineServices& services, std::string printer, SharedSettings settings);
+    Line(const LineServices& services, std::string printer, SharedSettings settings, bool held);
     ~Line();
     Line(const Line&) = delete;
     Line& operator=(const Line&) = delete;
@@ -59,10 +62,14 @@ public:
     // Any thread; those that talk to the printer wait for its answers
     /// For the next start.
     void use(SharedSettings settings);
-    /// Begins to arm the job, which has a ticket of this printer that says so. FailureKind::stopped if the line is busy.
-    [[nodiscard]] Result<void> start(spool::JobId job);
+    /// Begins to arm the job, which has a ticket of this printer that says so. FailureKind::stopped if the line is
+    /// busy, or held and nobody has asked for it.
+    [[nodiscard]] Result<void> start(spool::JobId job, StartedBy who);
     /// Begins to stop what is armed or printed.
     void request_stop();
+    /// As request_stop(); and from now on nothing starts by itself until an operator starts something.
+    void hold();
+    [[nodiscard]] bool held() const;
     /// Waits until what is armed or printed now is not any more. How the last job ended, if there was one.
     [[nodiscard]] std::optional<Ending> wait_until_idle();
     /// The job that is armed or printed, and where it stands.
@@ -100,6 +107,9 @@ private:
     // line_printing.cpp: from the order to its end
     void print(spool::JobId job);
     [[nodiscard]] Result<Ending> print_runs(spool::JobId job);
+    [[nodiscard]] Result<std::optional<daemon::Hindrance>> ask_about_others(spool::JobId job,
+                                                                            const daemon::JobRunSettings& settings);
+    void take_note_of(spool::JobId other);
     [[nodiscard]] Result<daemon::JobRunSettings> run_settings(const spool::Job& job);
     [[nodiscard]] Result<std::optional<Ending>> check_printer(spool::JobId job, bool may_be_printing);
     [[nodiscard]] Ending run(const JobFacts& facts, RecordRange wanted, const std::optional<daemon::OpenIssue>& open,
@@ -121,6 +131,7 @@ private:
     bool begun_ = false;                 ///< the thread has taken the order
     bool checking_ = false;              ///< preflight
     bool stop_requested_ = false;
+    bool held_ = false; ///< stopped by an operator
     bool closing_ = false;
     daemon::JobRun* run_ = nullptr;      ///< under way
     std::optional<RecordRange> records_; ///< of the job that is on the line
@@ -135,9 +146,9 @@ private:
     };
     Heard heard_;
 
-    std::mutex panel_mutex_; ///< for what follows, also while the printer is talked to
-    std::unique_ptr<daemon::PanelHold> panel_;
-    std::atomic<bool> panel_held_{false};
+    std::shared_ptr<daemon::PanelHold> panel_;
+
+    std::mutex panel_orders_; ///< one at a time holds or releases the panel, also while the printer is talked to
 
     std::thread thread_;
 };

@@ -1,9 +1,10 @@
-// The printer besides printing: a look at it before a start or for whoever asks, one error acknowledged, the panel held.
-// Each is a short conversation on a connection of its own.
+// The printer besides printing: a look at it before a start or for whoever asks, one error acknowledged, the panel
+// held. Each is a short conversation on a connection of its own.
 #include "daemon/wall_clock.hpp"
 #include "service/line.hpp"
 
 #include <chrono>
+#include <utility>
 
 namespace linefeed::service {
 
@@ -58,22 +59,28 @@ Result<void> Line::acknowledge(std::uint32_t error) {
 }
 
 Result<void> Line::hold_panel(std::optional<Duration> time) {
-    const std::lock_guard lock{panel_mutex_};
-    if (!time) {
-        panel_.reset(); // releases
-        panel_held_ = false;
-        return {};
+    const std::lock_guard orders{panel_orders_};
+    std::shared_ptr<daemon::PanelHold> panel;
+    {
+        const std::lock_guard lock{mutex_};
+        panel = time ? panel_ : std::exchange(panel_, nullptr);
     }
-    if (!panel_ || !panel_->held()) { // perhaps it has another address since
+    if (!time) {
+        return {}; // letting go of it releases
+    }
+    if (!panel || !panel->held()) { // perhaps it has another address since
         const auto client = client_settings();
         if (!client) {
             return client.error();
         }
-        panel_ = std::make_unique<daemon::PanelHold>(*client);
+        auto fresh = std::make_shared<daemon::PanelHold>(*client);
+        {
+            const std::lock_guard lock{mutex_};
+            panel_ = fresh;
+        }
+        panel = std::move(fresh); // the old one, if there was one, releases now
     }
-    auto held = panel_->hold(*time);
-    panel_held_ = held.has_value();
-    return held;
+    return panel->hold(*time);
 }
 
 /// With mutex_ held.

@@ -1,5 +1,5 @@
-// From the order to print a job to the reason why it ended. The same steps as `linefeed print`, without a terminal: what
-// an operator has to decide is left to him.
+// From the order to print a job to the reason why it ended. The same steps as `linefeed print`, without a terminal:
+// what an operator has to decide is left to him.
 #include "daemon/events.hpp"
 #include "daemon/other_jobs.hpp"
 #include "daemon/record_text.hpp"
@@ -96,11 +96,7 @@ Result<Ending> Line::print_runs(spool::JobId job) {
     if (!settings) {
         return settings.error();
     }
-    const auto hindrance = daemon::settle_other_jobs(
-        services_.threads, services_.spool, job, *settings, [this, job](JobRun& run, spool::JobId other) {
-            event(event_kind::printer_notice, other, "may have records in this printer: asking how far it came");
-            watch(run, job);
-        });
+    const auto hindrance = ask_about_others(job, *settings);
     if (!hindrance) {
         return hindrance.error();
     }
@@ -140,6 +136,52 @@ Result<Ending> Line::print_runs(spool::JobId job) {
         if (!goes_on) {
             return ending;
         }
+    }
+}
+
+/// What other jobs may still have in the printer is found out before it is flushed.
+Result<std::optional<daemon::Hindrance>> Line::ask_about_others(spool::JobId job,
+                                                                const daemon::JobRunSettings& settings) {
+    std::vector<spool::JobId> asked;
+    auto hindrance = daemon::settle_other_jobs(
+        services_.threads, services_.spool, job, settings, [&](JobRun& run, spool::JobId other) {
+            event(event_kind::printer_notice, other, "may have records in this printer: asking how far it came");
+            asked.push_back(other);
+            watch(run, job);
+        });
+    for (const spool::JobId other : asked) {
+        take_note_of(other);
+    }
+    return hindrance;
+}
+
+/// The printer has been asked about a job that was not over: now it may be, or nobody knows.
+void Line::take_note_of(spool::JobId other) {
+    const auto phase = services_.access.write([other](spool::Spool& spool) -> Result<daemon::JobPhase> {
+        const auto facts = read_facts(spool, other);
+        if (!facts) {
+            return facts.error();
+        }
+        const daemon::JobPhase now = phase_of(*facts, {});
+        if (!facts->ticket || (now != daemon::JobPhase::finished && now != daemon::JobPhase::in_doubt)) {
+            return now;
+        }
+        spool::Ticket ticket = *facts->ticket;
+        const bool finished = now == daemon::JobPhase::finished;
+        ticket.begun = !finished;
+        ticket.message = finished ? "" : "the printer was asked, and does not know either: say which are printed";
+        if (finished) {
+            ticket.place.reset();
+        }
+        auto written = spool.write_ticket(ticket);
+        return written ? Result<daemon::JobPhase>{now} : written.error();
+    });
+    if (!phase) {
+        event(event_kind::storage_failed, other, phase.error().message);
+    } else if (*phase == daemon::JobPhase::finished) {
+        event(event_kind::job_finished, other, "every record was printed before this job was interrupted");
+    } else if (*phase == daemon::JobPhase::in_doubt) {
+        event(event_kind::job_in_doubt, other, "nobody knows which of its last records are printed: say which are");
     }
 }
 

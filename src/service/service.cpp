@@ -48,8 +48,9 @@ Service::~Service() {
     shut_down();
 }
 
-/// Nothing prints now. What was under way when the service ended stands, and says so already; what was over by then, and
-/// not yet written down, is over.
+/// Nothing prints now. What was under way when the service ended stands, and says so already; what was over by then,
+/// and not yet written down, is over. What has been printed from the command line meanwhile stands as well: it is not
+/// for a queue to go on with it.
 Result<void> Service::recover() {
     return access_.write([](spool::Spool& spool) -> Result<void> {
         auto begun = spool.begun_jobs();
@@ -61,12 +62,17 @@ Result<void> Service::recover() {
             if (!facts) {
                 return facts.error();
             }
-            if (phase_of(*facts, {}) != JobPhase::finished) {
+            const JobPhase phase = phase_of(*facts, {});
+            const bool finished = phase == JobPhase::finished;
+            if (!finished && ticket.begun) {
                 continue;
             }
-            ticket.begun = false;
-            ticket.place.reset();
-            ticket.message.clear();
+            ticket.begun = !finished;
+            ticket.message =
+                phase == JobPhase::stopped ? "it was printed from the command line: resume it to go on" : "";
+            if (finished) {
+                ticket.place.reset();
+            }
             if (auto written = spool.write_ticket(ticket); !written) {
                 return written;
             }
@@ -76,13 +82,17 @@ Result<void> Service::recover() {
 }
 
 void Service::open_lines() {
-    const LineServices services{{feed_, store_}, spool_, access_, events_,
-                                [this](const std::string& printer) { look_for_work(printer); }};
-    const std::lock_guard lock{parts_mutex_};
-    for (const config::PrinterSettings& printer : settings_->printers) {
-        if (!lines_.contains(printer.name)) {
-            lines_.emplace(printer.name, std::make_shared<Line>(services, printer.name, settings_));
+    const LineServices services{
+        {feed_, store_}, spool_, access_, events_, [this](const std::string& printer) { look_for_work(printer); }};
+    const SharedSettings now = settings();
+    for (const config::PrinterSettings& printer : now->printers) {
+        if (line(printer.name) != nullptr) {
+            continue;
         }
+        const auto held = access_.write([&](spool::Spool& spool) { return spool.printer_held(printer.name); });
+        auto opened = std::make_shared<Line>(services, printer.name, now, !held || *held);
+        const std::lock_guard lock{parts_mutex_};
+        lines_.emplace(printer.name, std::move(opened));
     }
 }
 
@@ -90,6 +100,9 @@ void Service::open_folders() {
     const FolderServices services{access_, events_, counts_,
                                   [this](const std::string& printer) { look_for_work(printer); }};
     const std::lock_guard lock{parts_mutex_};
+    if (ending_ || !folders_.empty()) {
+        return; // opened by a reload already
+    }
     for (const config::FolderSettings& folder : settings_->folders) {
         folders_.push_back(std::make_shared<Folder>(services, folder, *settings_));
     }

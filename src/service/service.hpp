@@ -5,12 +5,13 @@
 #include "config/problem.hpp"
 #include "config/settings.hpp"
 #include "daemon/feed_thread.hpp"
+#include "daemon/job_facts.hpp"
 #include "daemon/operations.hpp"
+#include "daemon/operator_word.hpp"
 #include "daemon/service_manager.hpp"
 #include "daemon/store_thread.hpp"
 #include "service/event_log.hpp"
 #include "service/folder.hpp"
-#include "daemon/job_facts.hpp"
 #include "service/line.hpp"
 #include "service/spool_access.hpp"
 #include "spool/json_text.hpp"
@@ -82,8 +83,7 @@ public:
     [[nodiscard]] Result<std::vector<daemon::JobView>> jobs(const daemon::JobFilter& filter) override;
     [[nodiscard]] Result<std::optional<daemon::JobView>> job(spool::JobId id) override;
     [[nodiscard]] Result<daemon::DoubtView> doubt(spool::JobId id) override;
-    [[nodiscard]] Result<std::vector<daemon::DoubtView::Record>> records(spool::JobId id,
-                                                                         RecordRange records) override;
+    [[nodiscard]] Result<std::vector<daemon::DoubtView::Record>> records(spool::JobId id, RecordRange records) override;
     [[nodiscard]] Result<std::vector<spool::HistoryStretch>> history(spool::JobId id, RecordRange records) override;
     [[nodiscard]] Result<std::vector<spool::LedgerRow>> ledger(spool::JobId id, std::int64_t after,
                                                                std::size_t limit) override;
@@ -134,8 +134,7 @@ private:
     /// FailureKind::usage, naming those that there are.
     [[nodiscard]] Result<LinePtr> known_line(std::string_view printer) const;
     [[nodiscard]] std::optional<daemon::JobPhase> live_phase(spool::JobId id) const;
-    void event(std::string_view kind, const std::string& printer, std::optional<spool::JobId> job,
-               std::string message);
+    void event(std::string_view kind, const std::string& printer, std::optional<spool::JobId> job, std::string message);
 
     /// What is asked for, for the audit log. `detail` = as JSON.
     struct Act {
@@ -152,9 +151,18 @@ private:
     }
     void write_audit(const daemon::Caller& caller, const Act& act, const std::optional<Failure>& refused);
 
+    /// Rows that an operator's word comes to, and the newest row of the job as he spoke.
+    struct Said {
+        std::vector<spool::LedgerEntry> rows;
+        std::int64_t as_of = 0;
+    };
+    [[nodiscard]] Result<Said> said_by(const spool::Job& job, const daemon::OperatorWord& word,
+                                       const daemon::Caller& caller);
+
     // With orders_ held
-    [[nodiscard]] Result<void> begin(spool::JobId id);
-    [[nodiscard]] Result<void> check_startable(const JobFacts& facts) const;
+    [[nodiscard]] Result<void> begin(spool::JobId id, StartedBy who);
+    [[nodiscard]] Result<void> check_open_records(const JobFacts& facts, const std::string& printer);
+    [[nodiscard]] Result<void> check_startable(const JobFacts& facts);
     [[nodiscard]] Result<void> put_into_queue(spool::JobId id, const std::string& printer);
     [[nodiscard]] Result<void> check_fits(const JobFacts& facts, const std::string& printer) const;
     [[nodiscard]] Result<JobFacts> facts_of_idle(spool::JobId id);
@@ -177,6 +185,7 @@ private:
     EventLog events_;
     IntakeCounts counts_;
 
+    std::mutex reloads_; ///< one at a time, as a whole: taken before orders_
     /// One operation at a time decides about jobs and queues; none waits for a printer meanwhile.
     std::mutex orders_;
     bool closing_ = false;            ///< by orders_

@@ -90,8 +90,8 @@ Result<ImportAnswer> import_file(const std::filesystem::path& file, const intake
     if (!spec) {
         return spec.error();
     }
-    const auto known = spec->source_sha256.empty() ? Result<std::optional<intake::KnownBatch>>{std::nullopt}
-                                                   : batches.find(*spec);
+    const auto known =
+        spec->source_sha256.empty() ? Result<std::optional<intake::KnownBatch>>{std::nullopt} : batches.find(*spec);
     if (!known) {
         return known.error();
     }

@@ -94,12 +94,17 @@ Result<daemon::DoubtView> Service::doubt(spool::JobId id) {
         if (!facts) {
             return facts.error();
         }
+        const auto as_of = spool.last_ledger_row(id); // first: what comes in between is overtaken
+        if (!as_of) {
+            return as_of.error();
+        }
         const auto evidence = daemon::doubt_evidence(spool, facts->job);
         if (!evidence) {
             return evidence.error();
         }
         daemon::DoubtView view;
         view.hole = evidence->hole;
+        view.as_of = *as_of;
         for (const RecordRange& range : evidence->ranges) {
             view.count += range.count();
         }
@@ -143,8 +148,8 @@ Result<std::vector<spool::HistoryStretch>> Service::history(spool::JobId id, Rec
         }
         std::vector<spool::HistoryStretch> found;
         for (spool::HistoryStretch& stretch : history.stretches()) {
-            const bool within = !records.empty() && stretch.range.first() <= records.last() &&
-                                records.first() <= stretch.range.last();
+            const bool within =
+                !records.empty() && stretch.range.first() <= records.last() && records.first() <= stretch.range.last();
             if (within && found.size() < most_stretches) {
                 stretch.range = RecordRange::closed(std::max(stretch.range.first(), records.first()),
                                                     std::min(stretch.range.last(), records.last()));

@@ -2,6 +2,7 @@
 // the job allow it, by itself. Only a job that was never begun starts by itself, and only while nothing else of its
 // printer has been begun and is not over.
 #include "daemon/events.hpp"
+#include "daemon/ledger_keeper.hpp"
 #include "daemon/record_text.hpp"
 #include "service/service.hpp"
 
@@ -16,8 +17,9 @@ using daemon::JobPhase;
 namespace {
 
 /// What stands on a job while it is printed, and so what is found if the service does not get to write more.
-constexpr const char* interrupted_words = "the service ended while this job was on the line: what is in the printer may "
-                                          "still be printed; resume it to find out and to go on";
+constexpr const char* interrupted_words =
+    "the service ended while this job was on the line: what is in the printer may "
+    "still be printed; resume it to find out and to go on";
 
 Failure wrong(const std::string& message) {
     return {FailureKind::usage, message};
@@ -32,7 +34,7 @@ Result<JobFacts> Service::facts_of_idle(spool::JobId id) {
     return access_.write([id](spool::Spool& spool) { return read_facts(spool, id); });
 }
 
-Result<void> Service::check_startable(const JobFacts& facts) const {
+Result<void> Service::check_startable(const JobFacts& facts) {
     const std::string name = name_of(facts.job.id);
     const JobPhase phase = phase_of(facts, {});
     switch (phase) {
@@ -62,7 +64,34 @@ Result<void> Service::check_startable(const JobFacts& facts) const {
     if (facts.printer().empty()) {
         return wrong(name + " belongs to no printer yet: queue it at one");
     }
-    return check_fits(facts, facts.printer());
+    auto fits = check_fits(facts, facts.printer());
+    return fits ? check_open_records(facts, facts.printer()) : fits;
+}
+
+/// Records that may be in a printer are asked for there, whatever it is called now: another line that asked for them
+/// would write the same job, and learn nothing.
+Result<void> Service::check_open_records(const JobFacts& facts, const std::string& printer) {
+    if (facts.in(spool::RecordState::open) == RecordCount{0}) {
+        return {};
+    }
+    const spool::JobId id = facts.job.id;
+    const auto open = access_.write([id](spool::Spool& spool) { return daemon::find_open_issue(spool, id); });
+    if (!open || !*open) {
+        return open ? Result<void>{} : open.error();
+    }
+    const SharedSettings now = settings();
+    for (const config::PrinterSettings& own : now->printers) {
+        if (link::to_string(own.address) == (*open)->printer) {
+            return own.name == printer ? Result<void>{}
+                                       : wrong(name_of(id) + " may have records in printer " + own.name +
+                                               ": it belongs to that printer until they are found out about");
+        }
+    }
+    if (facts.printer().empty() || facts.printer() == printer) {
+        return {}; // it may have another address now: its serial number tells
+    }
+    return wrong(name_of(id) + " may have records in the printer at " + (*open)->printer + ": it belongs to " +
+                 facts.printer());
 }
 
 Result<void> Service::check_fits(const JobFacts& facts, const std::string& printer) const {
@@ -78,7 +107,7 @@ Result<void> Service::check_fits(const JobFacts& facts, const std::string& print
 }
 
 /// Writes down that it is begun before anything is: whatever happens next, it will not start by itself again.
-Result<void> Service::begin(spool::JobId id) {
+Result<void> Service::begin(spool::JobId id, StartedBy who) {
     if (closing_) {
         return Failure{FailureKind::stopped, "the service is ending"};
     }
@@ -109,12 +138,13 @@ Result<void> Service::begin(spool::JobId id) {
         ticket.place = *first;
         ticket.begun = true;
         ticket.message = interrupted_words;
-        return spool.write_ticket(ticket);
+        auto done = spool.write_ticket(ticket);
+        return done && who == StartedBy::person ? spool.hold_printer(ticket.printer, false) : done;
     });
     if (!written) {
         return written;
     }
-    if (auto started = (*line)->start(id); !started) {
+    if (auto started = (*line)->start(id, who); !started) {
         return started;
     }
     event(event_kind::job_started, facts->printer(), id, "its start has begun");
@@ -124,7 +154,7 @@ Result<void> Service::begin(spool::JobId id) {
 Result<void> Service::start(const Caller& caller, spool::JobId id) {
     return audited(caller, {"start", name_of(id)}, [&] {
         const std::lock_guard lock{orders_};
-        return begin(id);
+        return begin(id, StartedBy::person);
     });
 }
 
@@ -146,10 +176,11 @@ Result<spool::JobId> Service::start_next(const Caller& caller, std::string_view 
                 return facts.error();
             }
             if (phase_of(*facts, live_phase(ticket.job)) == JobPhase::in_doubt) {
-                why = name_of(ticket.job) + " has records in doubt: say which of them are printed, or start another job";
+                why =
+                    name_of(ticket.job) + " has records in doubt: say which of them are printed, or start another job";
                 break; // who skips it should do so knowingly
             }
-            auto begun = begin(ticket.job);
+            auto begun = begin(ticket.job, StartedBy::person);
             return begun ? Result<spool::JobId>{ticket.job} : begun.error();
         }
         return wrong(why);
@@ -163,15 +194,21 @@ Result<void> Service::stop(const Caller& caller, std::string_view printer) {
         if (!line) {
             return line.error();
         }
-        if ((*line)->idle()) {
+        const bool idle = (*line)->idle();
+        (*line)->hold(); // even if it is idle: what a queue has begun meanwhile is stopped as well
+        const auto ending = (*line)->wait_until_idle();
+        const auto written = access_.write(
+            [&](spool::Spool& spool) { return (*line)->held() ? spool.hold_printer(name, true) : Result<void>{}; });
+        if (!written) {
+            event(event_kind::storage_failed, name, {}, written.error().message);
+        }
+        if (idle) {
             return {};
         }
-        (*line)->request_stop();
-        const auto ending = (*line)->wait_until_idle();
         using feeder::OutcomeCode;
         const OutcomeCode code = ending ? ending->outcome.code : OutcomeCode::stop_requested;
-        const bool stands = code != OutcomeCode::did_not_stop && code != OutcomeCode::no_answer &&
-                            code != OutcomeCode::link_lost;
+        const bool stands =
+            code != OutcomeCode::did_not_stop && code != OutcomeCode::no_answer && code != OutcomeCode::link_lost;
         return stands ? Result<void>{} : Failure{FailureKind::unreachable, ending->words};
     });
 }
@@ -188,8 +225,11 @@ Result<void> Service::put_into_queue(spool::JobId id, const std::string& printer
     if (phase_of(*facts, {}) == JobPhase::finished) {
         return wrong("every record of " + name_of(id) + " is printed: name those that are to be printed again");
     }
-    const bool may_hold_records = facts->in(spool::RecordState::open) > RecordCount{0} || line(before) != nullptr;
-    if (facts->issued() && !before.empty() && before != printer && may_hold_records) {
+    if (facts->in(spool::RecordState::open) > RecordCount{0}) {
+        if (auto there = check_open_records(*facts, printer); !there) {
+            return there;
+        }
+    } else if (facts->issued() && before != printer && line(before) != nullptr) {
         return wrong(name_of(id) + " has been printed on " + before + ": it belongs to that printer");
     }
     if (auto fits = check_fits(*facts, printer); !fits) {
@@ -256,31 +296,33 @@ Result<void> Service::cancel(const Caller& caller, spool::JobId id) {
 
 Result<std::optional<spool::JobId>> Service::next_by_itself(const std::string& printer) {
     return access_.write([&](spool::Spool& spool) -> Result<std::optional<spool::JobId>> {
-        const auto begun = spool.begun_jobs();
-        const auto queue = spool.queue(printer);
-        if (!begun || !queue) {
-            return begun ? queue.error() : begun.error();
+        const auto stands = spool.has_begun_job(printer);
+        const auto first = spool.first_in_queue(printer);
+        if (!stands || !first) {
+            return stands ? first.error() : stands.error();
         }
-        const bool stands = std::ranges::any_of(
-            *begun, [&](const spool::Ticket& ticket) { return ticket.printer == printer; });
-        const bool starts = !stands && !queue->empty() && queue->front().autostart;
-        return starts ? std::optional{queue->front().job} : std::nullopt;
+        const bool starts = !*stands && *first && (*first)->autostart;
+        return starts ? std::optional{(*first)->job} : std::nullopt;
     });
 }
 
 void Service::look_for_work(const std::string& printer) {
     const std::lock_guard lock{orders_};
+    if (closing_) {
+        return; // the lines may be going already
+    }
     const SharedSettings now = settings();
     const config::PrinterSettings* const own = now->printer(printer);
     const LinePtr at = line(printer);
-    if (closing_ || own == nullptr || !own->queue.autostart || !at || !at->idle()) {
+    if (own == nullptr || !own->queue.autostart || !at || !at->idle() || at->held()) {
         return;
     }
     const auto next = next_by_itself(printer);
     if (!next || !*next) {
         return;
     }
-    const auto begun = audited(Caller{"linefeedd"}, {"start", name_of(**next)}, [&] { return begin(**next); });
+    const auto begun =
+        audited(Caller{"linefeedd"}, {"start", name_of(**next)}, [&] { return begin(**next, StartedBy::itself); });
     if (!begun) {
         hold_back(**next, begun.error());
     }

@@ -36,6 +36,7 @@ bool concerns_folders(const config::Change& change) {
 } // namespace
 
 Result<std::vector<std::string>> Service::reload(const daemon::Caller& caller) {
+    const std::lock_guard one_at_a_time{reloads_};
     std::vector<LinePtr> gone;
     std::vector<FolderPtr> old_folders;
     bool folders_change = false;

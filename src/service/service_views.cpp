@@ -44,7 +44,8 @@ daemon::ServiceStatus Service::status() {
     }
     for (const LinePtr& line : lines()) {
         const daemon::PrinterView view = line->view();
-        status.checks.push_back({"printer " + view.name, view.warnings.empty() ? Severity::ok : Severity::warning,
+        status.checks.push_back({"printer " + view.name,
+                                 view.warnings.empty() ? Severity::ok : Severity::warning,
                                  view.warnings.empty() ? std::string{to_string(view.phase)} : view.warnings.front(),
                                  {}});
     }
@@ -160,8 +161,7 @@ Result<std::optional<daemon::Operations::Remembered>> Service::remembered(const 
     if (!*answer) {
         return std::optional<Remembered>{};
     }
-    return std::optional{
-        Remembered{std::move((*answer)->request_hash), (*answer)->status, std::move((*answer)->body)}};
+    return std::optional{Remembered{std::move((*answer)->request_hash), (*answer)->status, std::move((*answer)->body)}};
 }
 
 Result<void> Service::remember(const daemon::Caller& caller, std::string_view key, const Remembered& answer) {

@@ -21,9 +21,15 @@ Failure wrong(const std::string& message) {
     return {FailureKind::usage, message};
 }
 
+/// What an operator has seen may not be what his word would settle now.
+Failure overtaken(spool::JobId id) {
+    return {FailureKind::stopped,
+            "what is known of " + name_of(id) + " has changed meanwhile: look again at its records in doubt"};
+}
+
 Result<daemon::OperatorWord> word_of(const daemon::SettleRequest& request) {
-    const int given = int{request.policy.has_value()} + int{request.last_printed.has_value()} +
-                      int{request.printed.has_value()};
+    const int given =
+        int{request.policy.has_value()} + int{request.last_printed.has_value()} + int{request.printed.has_value()};
     if (given != 1) {
         return wrong("say one thing about the records in doubt: the record on the last product, which of them are "
                      "printed, or that they are to be skipped or printed again");
@@ -114,8 +120,9 @@ Result<void> Service::reprint(const Caller& caller, spool::JobId id, const daemo
         if (!rows) {
             return rows.error();
         }
-        const std::string words = "records " + daemon::to_text(*records) + " are to be printed again: " +
-                                  request.reason + " (" + caller.name + "); start it to do so";
+        const std::string words = "records " + daemon::to_text(*records) +
+                                  " are to be printed again: " + request.reason + " (" + caller.name +
+                                  "); start it to do so";
         const SharedSettings now = settings();
         std::string printer;
         auto written = access_.write([&](spool::Spool& spool) -> Result<void> {
@@ -148,6 +155,18 @@ Result<void> Service::reprint(const Caller& caller, spool::JobId id, const daemo
     });
 }
 
+/// Looks at the records without holding up the lines: there may be many.
+Result<Service::Said> Service::said_by(const spool::Job& job, const daemon::OperatorWord& word, const Caller& caller) {
+    return access_.read([&](spool::Spool& spool) -> Result<Said> {
+        const auto newest = spool.last_ledger_row(job.id);
+        if (!newest) {
+            return newest.error();
+        }
+        auto rows = daemon::rows_by_operator(spool, job, word, caller.name);
+        return rows ? Result<Said>{Said{std::move(*rows), *newest}} : rows.error();
+    });
+}
+
 Result<void> Service::settle(const Caller& caller, spool::JobId id, const daemon::SettleRequest& request) {
     spool::JsonObject detail;
     if (request.policy) {
@@ -158,6 +177,9 @@ Result<void> Service::settle(const Caller& caller, spool::JobId id, const daemon
     }
     if (request.printed) {
         detail.add("printed", *request.printed);
+    }
+    if (request.as_of) {
+        detail.add("as_of", *request.as_of);
     }
     std::string printer;
     auto done = audited(caller, {"settle", name_of(id), detail}, [&]() -> Result<void> {
@@ -173,11 +195,22 @@ Result<void> Service::settle(const Caller& caller, spool::JobId id, const daemon
         if (facts->in(RecordState::in_doubt) == RecordCount{0}) {
             return wrong("no record of " + name_of(id) + " is in doubt");
         }
+        const auto said = said_by(facts->job, *word, caller);
+        if (!said) {
+            return said.error();
+        }
+        if (request.as_of && *request.as_of != said->as_of) {
+            return overtaken(id);
+        }
         printer = facts->printer();
         bool finished = false;
         auto settled = access_.write([&](spool::Spool& spool) -> Result<void> {
-            if (auto said = daemon::settle_by_operator(spool, facts->job, *word, caller.name); !said) {
-                return said;
+            const auto newest = spool.last_ledger_row(id);
+            if (!newest || *newest != said->as_of) {
+                return newest ? overtaken(id) : newest.error();
+            }
+            if (auto appended = spool.append(id, said->rows); !appended) {
+                return appended;
             }
             const auto after = read_facts(spool, id);
             if (!after) {

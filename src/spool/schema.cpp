@@ -34,27 +34,44 @@ Result<int> check_schema(Database& database) {
     return static_cast<int>(*version);
 }
 
+namespace {
+
+Result<void> apply(Database& database, const Migration& migration) {
+    auto transaction = Transaction::begin(database);
+    if (!transaction) {
+        return transaction.error();
+    }
+    if (auto done = database.execute(migration.sql); !done) {
+        return done;
+    }
+    const std::string set_version = "PRAGMA user_version = " + std::to_string(migration.version);
+    if (auto done = database.execute(set_version.c_str()); !done) {
+        return done;
+    }
+    return transaction->commit();
+}
+
+} // namespace
+
 Result<void> apply_migrations(Database& database, int current_version) {
+    const auto enforced = database.query_number("PRAGMA foreign_keys");
+    if (!enforced) {
+        return enforced.error();
+    }
+    // A table whose rows name rows of the same table cannot be dropped in a time that grows with their number only: for
+    // each row SQLite would look through all others. The setting takes effect between transactions only.
+    if (auto off = database.execute("PRAGMA foreign_keys = OFF"); !off) {
+        return off;
+    }
     for (const Migration& migration : migrations()) {
         if (migration.version <= current_version) {
             continue;
         }
-        auto transaction = Transaction::begin(database);
-        if (!transaction) {
-            return transaction.error();
-        }
-        if (auto done = database.execute(migration.sql); !done) {
-            return done;
-        }
-        const std::string set_version = "PRAGMA user_version = " + std::to_string(migration.version);
-        if (auto done = database.execute(set_version.c_str()); !done) {
-            return done;
-        }
-        if (auto done = transaction->commit(); !done) {
+        if (auto done = apply(database, migration); !done) {
             return done;
         }
     }
-    return {};
+    return *enforced != 0 ? database.execute("PRAGMA foreign_keys = ON") : Result<void>{};
 }
 
 } // namespace linefeed::spool

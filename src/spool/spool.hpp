@@ -117,10 +117,18 @@ public:
     [[nodiscard]] Result<std::optional<Ticket>> ticket(JobId job);
     /// The tickets in the queue of a printer, in order.
     [[nodiscard]] Result<std::vector<Ticket>> queue(const std::string& printer);
-    /// Of jobs that were begun and are not over, oldest first.
+    /// The first of them.
+    [[nodiscard]] Result<std::optional<Ticket>> first_in_queue(const std::string& printer);
+    /// Whether a job of that printer was begun and is not over.
+    [[nodiscard]] Result<bool> has_begun_job(const std::string& printer);
+    /// Of jobs that were begun and are not over, or that wait and have something in the ledger all the same: printed by
+    /// one who writes no tickets. Oldest first.
     [[nodiscard]] Result<std::vector<Ticket>> begun_jobs();
     /// Writes a ticket, durable at return. The job must be there.
     [[nodiscard]] Result<void> write_ticket(const Ticket& ticket);
+    /// Whether an operator has stopped a printer, durable at return.
+    [[nodiscard]] Result<void> hold_printer(const std::string& printer, bool held);
+    [[nodiscard]] Result<bool> printer_held(const std::string& printer);
     /// A place before all others of the printer's queue, or behind them.
     [[nodiscard]] Result<std::int64_t> first_place(const std::string& printer);
     [[nodiscard]] Result<std::int64_t> last_place(const std::string& printer);
@@ -163,6 +171,11 @@ public:
     [[nodiscard]] Result<std::vector<JobId>> jobs_with_open_records();
     /// Rows of a job in order, from `after` (exclusive; 0 = from the start), at most `limit`.
     [[nodiscard]] Result<std::vector<LedgerRow>> ledger_rows(JobId job, std::int64_t after, std::size_t limit);
+    /// The newest row of the job; 0 = it has none. As long as that is the same, so is what is known of its records.
+    [[nodiscard]] Result<std::int64_t> last_ledger_row(JobId job);
+    /// What was said of a run as it began and of the records that it has left in doubt, in order; costs the same however
+    /// long the run is.
+    [[nodiscard]] Result<std::vector<LedgerRow>> doubt_rows(JobId job, RunId run);
     /// The run_started row of the newest run of the job, and the newest run_ended row that follows it.
     struct LastRun {
         LedgerRow started;

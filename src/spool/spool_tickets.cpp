@@ -65,8 +65,32 @@ Result<std::vector<Ticket>> Spool::queue(const std::string& printer) {
     return read_tickets(statement->bind(1, printer));
 }
 
+Result<std::optional<Ticket>> Spool::first_in_queue(const std::string& printer) {
+    static const std::string sql =
+        std::string{select_tickets} + "WHERE printer = ?1 AND place IS NOT NULL ORDER BY place, job LIMIT 1";
+    auto statement = state_->database->prepare(sql.c_str());
+    if (!statement) {
+        return statement.error();
+    }
+    auto found = read_tickets(statement->bind(1, printer));
+    if (!found) {
+        return found.error();
+    }
+    return found->empty() ? std::optional<Ticket>{} : std::optional{std::move(found->front())};
+}
+
+Result<bool> Spool::has_begun_job(const std::string& printer) {
+    auto statement = state_->database->prepare("SELECT 1 FROM tickets WHERE printer = ?1 AND begun = 1 LIMIT 1");
+    if (!statement) {
+        return statement.error();
+    }
+    return statement->bind(1, printer).step();
+}
+
 Result<std::vector<Ticket>> Spool::begun_jobs() {
-    static const std::string sql = std::string{select_tickets} + "WHERE begun = 1 ORDER BY job";
+    static const std::string sql = std::string{select_tickets} +
+                                   "WHERE begun = 1 OR (place IS NOT NULL AND EXISTS (SELECT 1 FROM "
+                                   "ledger_segments s WHERE s.job = tickets.job)) ORDER BY job";
     auto statement = state_->database->prepare(sql.c_str());
     if (!statement) {
         return statement.error();
@@ -101,6 +125,29 @@ Result<void> Spool::write_ticket(const Ticket& ticket) {
         return state_->failed_write(done.error());
     }
     return {};
+}
+
+Result<void> Spool::hold_printer(const std::string& printer, bool held) {
+    if (auto writable = state_->check_writable(); !writable) {
+        return writable;
+    }
+    auto statement = state_->database->prepare(held ? "INSERT OR IGNORE INTO held_printers (printer) VALUES (?1)"
+                                                    : "DELETE FROM held_printers WHERE printer = ?1");
+    if (!statement) {
+        return statement.error();
+    }
+    if (auto done = statement->bind(1, printer).run(); !done) {
+        return state_->failed_write(done.error());
+    }
+    return {};
+}
+
+Result<bool> Spool::printer_held(const std::string& printer) {
+    auto statement = state_->database->prepare("SELECT 1 FROM held_printers WHERE printer = ?1");
+    if (!statement) {
+        return statement.error();
+    }
+    return statement->bind(1, printer).step();
 }
 
 namespace {

@@ -2,6 +2,8 @@
 #include "spool/ledger_codec.hpp"
 #include "spool/spool_state.hpp"
 
+#include <algorithm>
+#include <iterator>
 #include <map>
 
 namespace linefeed::spool {
@@ -137,6 +139,28 @@ Result<std::int64_t> Spool::State::verify() {
     return verifier.sequence();
 }
 
+namespace {
+
+Result<std::vector<LedgerRow>> read_rows(Statement& statement, const std::string& path) {
+    std::vector<LedgerRow> rows;
+    while (true) {
+        const auto more = statement.step();
+        if (!more) {
+            return more.error();
+        }
+        if (!*more) {
+            return rows;
+        }
+        auto row = ledger_row_from(statement, path);
+        if (!row) {
+            return row.error();
+        }
+        rows.push_back(std::move(*row));
+    }
+}
+
+} // namespace
+
 Result<std::vector<LedgerRow>> Spool::ledger_rows(JobId job, std::int64_t after, std::size_t limit) {
     static const std::string sql =
         std::string{select_ledger} + "WHERE l.job = ?1 AND l.sequence > ?2 ORDER BY l.sequence LIMIT ?3";
@@ -148,21 +172,36 @@ Result<std::vector<LedgerRow>> Spool::ledger_rows(JobId job, std::int64_t after,
     statement->bind(1, static_cast<std::int64_t>(job))
         .bind(2, after)
         .bind(3, static_cast<std::int64_t>(limit < most ? limit : most));
-    std::vector<LedgerRow> rows;
-    while (true) {
-        const auto more = statement->step();
-        if (!more) {
-            return more.error();
-        }
-        if (!*more) {
-            return rows;
-        }
-        auto row = ledger_row_from(*statement, state_->database->path());
-        if (!row) {
-            return row.error();
-        }
-        rows.push_back(std::move(*row));
+    return read_rows(*statement, state_->database->path());
+}
+
+Result<std::int64_t> Spool::last_ledger_row(JobId job) {
+    auto statement = state_->database->prepare("SELECT ifnull(max(sequence), 0) FROM ledger WHERE job = ?1");
+    if (!statement) {
+        return statement.error();
     }
+    const auto row = statement->bind(1, static_cast<std::int64_t>(job)).step();
+    return row ? Result<std::int64_t>{statement->number(0)} : row.error();
+}
+
+Result<std::vector<LedgerRow>> Spool::doubt_rows(JobId job, RunId run) {
+    static const std::string start_sql = std::string{select_ledger} + "WHERE l.job = ?1 AND l.sequence = ?2";
+    static const std::string doubt_sql =
+        std::string{select_ledger} + "WHERE l.job = ?1 AND l.run = ?2 AND l.kind = 'in_doubt' ORDER BY l.sequence";
+    std::vector<LedgerRow> rows;
+    for (const std::string* const sql : {&start_sql, &doubt_sql}) {
+        auto statement = state_->database->prepare(sql->c_str());
+        if (!statement) {
+            return statement.error();
+        }
+        statement->bind(1, static_cast<std::int64_t>(job)).bind(2, static_cast<std::int64_t>(run));
+        auto some = read_rows(*statement, state_->database->path());
+        if (!some) {
+            return some;
+        }
+        std::move(some->begin(), some->end(), std::back_inserter(rows));
+    }
+    return rows;
 }
 
 namespace {

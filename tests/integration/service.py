@@ -185,4 +185,4 @@ class Operator:
         doubt = self.service.get(f"/api/v1/jobs/{job['id']}/doubt")
         on_products = {text for _, text in self.simulator.prints()}
         printed = [str(record["number"]) for record in doubt["records"] if " ".join(record["fields"]) in on_products]
-        self.service.post(f"jobs/{job['id']}/settle", {"printed": ",".join(printed) or "none"})
+        self.service.post(f"jobs/{job['id']}/settle", {"printed": ",".join(printed) or "none", "as_of": doubt["as_of"]})

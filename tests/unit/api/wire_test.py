@@ -757,6 +757,8 @@ class Metrics(unittest.TestCase):
             self.assertIn('linefeed_folder_up{folder="names"} 0', lines)
             self.assertIn('linefeed_printer_refills_total{printer="quoted \\"line\\"\\\\\\n\\\\xFF"} 0', lines)
             self.assertFalse([line for line in lines if "job=" in line or "record=" in line])
+            connected = [line for line in lines if line.startswith("linefeed_printer_link_up{")]
+            self.assertEqual([], connected, "an idle printer is not one whose link is lost")
 
     def test_every_name_that_was_promised_is_there(self):
         names = """build_info start_time_seconds printer_up printer_link_up printer_printing printer_error_code printer_fifo_entries

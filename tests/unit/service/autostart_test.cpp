@@ -77,7 +77,7 @@ TEST_F(AutostartTest, shouldHoldTheQueueBackWhileAJobOfThePrinterStands) {
     EXPECT_EQ(printer.products(), serials(1, 420));
 }
 
-TEST_F(AutostartTest, shouldGoOnWithTheQueueWhenTheJobThatStandsIsCancelled) {
+TEST_F(AutostartTest, shouldGoOnWithTheQueueBehindACancelledJobWhenSomebodyStartsIt) {
     SimulatedPrinter printer{directory_ / "tape.csv", 300};
     open(settings(printer.address()));
     drop("a.csv", 1000, 1);
@@ -89,10 +89,14 @@ TEST_F(AutostartTest, shouldGoOnWithTheQueueWhenTheJobThatStandsIsCancelled) {
     const spool::JobId b = job_named("b.csv");
     EXPECT_EQ(view(b).phase, JobPhase::queued);
     ASSERT_TRUE(service_->cancel(anna, a));
-    ASSERT_TRUE(comes_to(b, JobPhase::finished));
+    std::this_thread::sleep_for(std::chrono::milliseconds{200});
+    EXPECT_EQ(view(b).phase, JobPhase::queued) << "the line was stopped by an operator";
+    drop("c.csv", 20, 2021);
+    ASSERT_EQ(service_->start_next(anna, "line1").value(), b);
+    ASSERT_TRUE(comes_to(job_named("c.csv"), JobPhase::finished)) << "from now on by itself again";
     service_.reset();
     std::vector<std::string> expected = serials(1, printed);
-    for (const std::string& text : serials(2001, 2020)) {
+    for (const std::string& text : serials(2001, 2040)) {
         expected.push_back(text);
     }
     EXPECT_EQ(printer.products(), expected);
@@ -149,6 +153,58 @@ TEST_F(AutostartTest, shouldStartAtTheStartOfTheServiceWhatWasNeverBegun) {
         service_.reset();
         EXPECT_EQ(printer.products(), serials(1, 20));
     }
+}
+
+TEST_F(AutostartTest, shouldStartNothingByItselfOnALineThatAnOperatorHasStopped) {
+    SimulatedPrinter printer{directory_ / "tape.csv", 1000};
+    open(settings(printer.address()));
+    ASSERT_TRUE(service_->stop(anna, "line1")) << "it stands, and is to stay so";
+    EXPECT_TRUE(service_->printer("line1")->held);
+    drop("a.csv", 10, 1);
+    const spool::JobId a = job_named("a.csv");
+    std::this_thread::sleep_for(std::chrono::milliseconds{200});
+    EXPECT_EQ(view(a).phase, JobPhase::queued);
+    ASSERT_TRUE(service_->reload(anna));
+    service_.reset();
+    open(settings(printer.address()));
+    std::this_thread::sleep_for(std::chrono::milliseconds{200});
+    EXPECT_EQ(view(a).phase, JobPhase::queued) << "not after a restart either";
+    ASSERT_TRUE(service_->start(anna, a));
+    ASSERT_TRUE(comes_to(a, JobPhase::finished));
+    drop("b.csv", 10, 11);
+    ASSERT_TRUE(comes_to(job_named("b.csv"), JobPhase::finished)) << "whoever starts a job lets the queue go on";
+    EXPECT_FALSE(service_->printer("line1")->held);
+    service_.reset();
+    EXPECT_EQ(printer.products(), serials(1, 20));
+}
+
+/// A run of the job on `printer` that has printed 1 to 2 and leaves 3 to 5 to be found out about.
+void interrupt(const std::filesystem::path& file, spool::JobId job, const std::string& printer, std::uint32_t count) {
+    auto spool = spool::Spool::open(file, {}).value();
+    const auto records = [](std::uint32_t first, std::uint32_t last) {
+        return RecordRange::closed(RecordNumber{first}, RecordNumber{last});
+    };
+    const auto run = spool.begin_run(job, records(1, count), R"({"printer":"tcp://)" + printer + R"("})").value();
+    const std::vector<spool::LedgerEntry> rows{{spool::LedgerKind::intent, run, records(1, 5), {}},
+                                               {spool::LedgerKind::printed, run, records(1, 2), {}}};
+    ASSERT_TRUE(spool.append(job, rows));
+}
+
+TEST_F(AutostartTest, shouldNotGoOnByItselfWithWhatWasPrintedFromTheCommandLine) {
+    SimulatedPrinter printer{directory_ / "tape.csv", 1000};
+    open(settings("127.0.0.1:1"));
+    ASSERT_TRUE(service_->stop(anna, "line1"));
+    drop("a.csv", 10, 1);
+    const spool::JobId a = job_named("a.csv");
+    service_.reset();
+    interrupt(directory_ / "spool.db", a, printer.address(), 10);
+    ASSERT_TRUE(spool::Spool::open(directory_ / "spool.db", {}).value().hold_printer("line1", false));
+    open(settings(printer.address()));
+    std::this_thread::sleep_for(std::chrono::milliseconds{300});
+    EXPECT_EQ(view(a).phase, JobPhase::stopped);
+    EXPECT_THAT(view(a).message, HasSubstr("printed from the command line"));
+    service_.reset();
+    EXPECT_THAT(printer.products(), SizeIs(0));
 }
 
 TEST_F(AutostartTest, shouldNotTryAgainByItselfWhatCouldNotBeStarted) {

@@ -76,6 +76,45 @@ TEST_F(ReloadTest, shouldNotChangeTheAddressOfAPrinterThatPrints) {
     EXPECT_EQ(printer.products(), serials(1, 300));
 }
 
+/// The line that is called so by now is not the printer that has them.
+TEST_F(ReloadTest, shouldAskForRecordsOnlyWhereTheyMayBe) {
+    SimulatedPrinter printer{directory_ / "tape.csv", 300};
+    const std::string address = printer.address();
+    open(settings_text({address, "127.0.0.1:1"}));
+    const spool::JobId job = import(100);
+    service_.reset();
+    {
+        auto spool = spool::Spool::open(directory_ / "spool.db", {}).value();
+        const auto records = RecordRange::closed(RecordNumber{1}, RecordNumber{100});
+        const auto run = spool.begin_run(job, records, R"({"printer":"tcp://)" + address + R"("})").value();
+        const spool::LedgerEntry intent{spool::LedgerKind::intent, run, records, {}};
+        ASSERT_TRUE(spool.append(job, {&intent, 1}));
+    }
+    open(settings_text({"127.0.0.1:1", address})); // they have changed places
+    EXPECT_THAT(service_->start(anna, job).error().message, HasSubstr("may have records in printer line2"));
+    ASSERT_TRUE(service_->enqueue(anna, job, "line2"));
+    EXPECT_THAT(service_->enqueue(anna, job, "line1").error().message, HasSubstr("may have records in printer line2"));
+    ASSERT_TRUE(service_->start(anna, job));
+    EXPECT_TRUE(wait_until([&] { return service_->printer("line2")->phase == daemon::PrinterPhase::idle; }));
+    EXPECT_EQ(view(job).open, RecordCount{0}) << "asked there";
+}
+
+TEST_F(ReloadTest, shouldLookAfterAFolderOnceHoweverManyReloadAtOnce) {
+    open(settings_text({"127.0.0.1:1"}));
+    std::filesystem::create_directory(directory_ / "in");
+    text_ = settings_text({"127.0.0.1:1"}, {},
+                          "folders:\n  in: {path: " + (directory_ / "in").string() +
+                              ", layout: serials, printer: line1}\n");
+    std::vector<std::thread> callers;
+    for (int i = 0; i < 4; ++i) {
+        callers.emplace_back([this] { EXPECT_TRUE(service_->reload(anna)); });
+    }
+    for (std::thread& caller : callers) {
+        caller.join();
+    }
+    EXPECT_THAT(service_->folders(), SizeIs(1));
+}
+
 TEST_F(ReloadTest, shouldBeginToWatchAFolderThatIsNew) {
     open(settings_text({"127.0.0.1:1"}));
     std::filesystem::create_directory(directory_ / "in");

@@ -39,7 +39,8 @@ protected:
     /// The settings, with the printers "line1", "line2" … of these addresses, and `more` behind them.
     [[nodiscard]] std::string settings_text(const std::vector<std::string>& addresses, const std::string& of_each = {},
                                             const std::string& more = {}) const {
-        std::string text = "spool: " + (directory_ / "spool.db").string() + "\nlayouts: {serials: {columns: [serial]}}\n";
+        std::string text =
+            "spool: " + (directory_ / "spool.db").string() + "\nlayouts: {serials: {columns: [serial]}}\n";
         text += "printers:\n";
         for (std::size_t i = 0; i < addresses.size(); ++i) {
             text += "  line" + std::to_string(i + 1) + ": {address: \"tcp://" + addresses[i] + "\"" + of_each + "}\n";
@@ -70,9 +71,11 @@ protected:
     /// Imported, and waiting at line1 unless told otherwise.
     spool::JobId import(std::uint32_t count, std::uint32_t first = 1, const std::string& printer = "line1",
                         bool autostart = false) {
-        const auto answer = service_->import(
-            anna, {.file = file("f" + std::to_string(first) + ".csv", count, first), .name = {}, .layout = "serials",
-                   .printer = printer, .autostart = autostart});
+        const auto answer = service_->import(anna, {.file = file("f" + std::to_string(first) + ".csv", count, first),
+                                                    .name = {},
+                                                    .layout = "serials",
+                                                    .printer = printer,
+                                                    .autostart = autostart});
         EXPECT_TRUE(answer && answer->job) << (answer ? answer->report : answer.error().message);
         return answer ? answer->job.value_or(spool::JobId{}) : spool::JobId{};
     }

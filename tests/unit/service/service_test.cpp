@@ -1,6 +1,8 @@
 // What the operator can do with jobs and printers, with a real spool and a printer whose products are the judge.
 #include "service_fixture.hpp"
 
+#include <regex>
+
 namespace linefeed::service {
 namespace {
 
@@ -186,13 +188,13 @@ TEST_F(ServiceTest, shouldStandAndSayWhyWhenThePrinterCannotBeReachedAndGoOnLate
 TEST_F(ServiceTest, shouldReportTheSameContentInsteadOfPrintingItTwice) {
     open(settings_text({"127.0.0.1:1"}));
     const spool::JobId job = import(10);
-    const auto copy = service_->import(anna, {.file = file("copy.csv", 10), .name = {}, .layout = "serials",
-                                              .printer = "line1"});
+    const auto copy =
+        service_->import(anna, {.file = file("copy.csv", 10), .name = {}, .layout = "serials", .printer = "line1"});
     ASSERT_TRUE(copy);
     EXPECT_TRUE(copy->duplicate);
     EXPECT_EQ(copy->job, job);
-    const auto again = service_->import(anna, {.file = file("copy.csv", 10), .name = "again", .layout = "serials",
-                                               .printer = {}, .again = true});
+    const auto again = service_->import(
+        anna, {.file = file("copy.csv", 10), .name = "again", .layout = "serials", .printer = {}, .again = true});
     ASSERT_TRUE(again);
     EXPECT_FALSE(again->duplicate);
     EXPECT_NE(again->job, job);
@@ -257,7 +259,11 @@ TEST_F(ServiceTest, shouldLetAnOperatorSettleADoubtAndGoOnBehindIt) {
 
     EXPECT_EQ(service_->settle(anna, job, {}).error().kind, FailureKind::usage);
     EXPECT_EQ(service_->settle(anna, job, {.last_printed = "9"}).error().kind, FailureKind::usage);
-    ASSERT_TRUE(service_->settle(anna, job, {.last_printed = "SN-4"}));
+    EXPECT_EQ(service_->settle(anna, job, {.printed = "none", .as_of = doubt.as_of - 1}).error().kind,
+              FailureKind::stopped)
+        << "said of something else";
+    ASSERT_TRUE(service_->settle(anna, job, {.last_printed = "SN-4", .as_of = doubt.as_of}));
+    EXPECT_NE(service_->doubt(job)->as_of, doubt.as_of);
     EXPECT_EQ(view(job).phase, JobPhase::stopped);
     EXPECT_EQ(view(job).next.first(), RecordNumber{5});
     ASSERT_TRUE(service_->start(anna, job));
@@ -292,6 +298,43 @@ TEST_F(ServiceTest, shouldShowThatAHistoryGoesOnBehindALongPage) {
     ASSERT_THAT(first, SizeIs(1001)) << "more than the 1000 that the API shows at once";
     EXPECT_EQ(first.back().range, records(1001, 1001));
     EXPECT_THAT(service_->history(job, records(1001, 1200)).value(), SizeIs(200));
+}
+
+/// The queue must not wait for a job that is over already.
+TEST_F(ServiceTest, shouldLetGoOfAJobThatThePrinterHasFinishedWhileNobodyAsked) {
+    SimulatedPrinter printer{directory_ / "tape.csv", 1000};
+    const std::string text = settings_text({printer.address()});
+    open(text);
+    const spool::JobId job = import(10);
+    ASSERT_TRUE(service_->start(anna, job));
+    ASSERT_TRUE(comes_to(job, JobPhase::finished));
+    const spool::JobId other = import(10, 11);
+    service_.reset();
+    { // as if the service had been killed before it heard of the end
+        auto spool = spool::Spool::open(directory_ / "spool.db", {}).value();
+        const RecordRange last = RecordRange::closed(RecordNumber{10}, RecordNumber{10});
+        const auto before = spool.last_run(job).value();
+        const spool::LedgerEntry again{spool::LedgerKind::reprint, before->started.entry.run, last, "{}"};
+        ASSERT_TRUE(spool.append(job, {&again, 1}));
+        const auto evidence = std::regex_replace(before->started.entry.evidence, std::regex{R"((_before":)0)"}, "$019");
+        ASSERT_NE(evidence, before->started.entry.evidence) << "the printer had printed 9 of 10 then";
+        const auto run = spool.begin_run(job, last, evidence).value();
+        const spool::LedgerEntry intent{spool::LedgerKind::intent, run, last, {}};
+        ASSERT_TRUE(spool.append(job, {&intent, 1}));
+        auto ticket = spool.ticket(job).value().value();
+        ticket.begun = true;
+        ticket.place = spool.first_place("line1").value();
+        ASSERT_TRUE(spool.write_ticket(ticket));
+    }
+    open(text);
+    ASSERT_EQ(view(job).phase, JobPhase::stopped);
+    ASSERT_TRUE(service_->start(anna, other));
+    ASSERT_TRUE(comes_to(other, JobPhase::finished));
+    EXPECT_EQ(view(job).phase, JobPhase::finished);
+    EXPECT_THAT(service_->printer("line1")->queue, IsEmpty());
+    EXPECT_THAT(service_->start_next(anna, "line1").error().message, HasSubstr("is empty"));
+    service_.reset();
+    EXPECT_EQ(printer.products(), serials(1, 20));
 }
 
 TEST_F(ServiceTest, shouldRememberAnswersOverARestart) {

@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include <chrono>
+
 namespace linefeed::spool {
 namespace {
 
@@ -90,8 +92,9 @@ TEST_F(SchemaTest, shouldTakeOverTheLedgerWithItsChain) {
         }
         ASSERT_TRUE(database->execute("PRAGMA user_version = 2").has_value());
     }
-    ASSERT_EQ(sql("INSERT INTO jobs VALUES (1, '/data/names.csv', 1000, 77, 5, '', '{}', 0, 'ready', 10, 1, 'x', 1, '', '')"),
-              "");
+    ASSERT_EQ(
+        sql("INSERT INTO jobs VALUES (1, '/data/names.csv', 1000, 77, 5, '', '{}', 0, 'ready', 10, 1, 'x', 1, '', '')"),
+        "");
     const std::vector<LedgerEntry> entries{{LedgerKind::run_started, RunId{1}, range(1, 10), "{}"},
                                            {LedgerKind::intent, RunId{1}, range(1, 10), ""},
                                            {LedgerKind::printed, RunId{1}, range(1, 10), "it's so"},
@@ -122,6 +125,38 @@ TEST_F(SchemaTest, shouldTakeOverTheLedgerWithItsChain) {
                 HasSubstr("append-only"));
     EXPECT_EQ(sql("PRAGMA foreign_key_check"), "");
     EXPECT_EQ(sql("PRAGMA integrity_check"), "ok");
+}
+
+/// Months of printing: the copy must not take longer for each row the more rows there are.
+TEST_F(SchemaTest, shouldTakeOverALargeLedgerInATimeThatGrowsWithItOnly) {
+    {
+        auto database = Database::open(path.string(), {}).value();
+        for (const Migration& migration : migrations().first(2)) {
+            ASSERT_TRUE(database->execute(migration.sql).has_value());
+        }
+        ASSERT_TRUE(database->execute("PRAGMA user_version = 2").has_value());
+    }
+    ASSERT_EQ(
+        sql("INSERT INTO jobs VALUES (1, '/data/names.csv', 1000, 77, 5, '', '{}', 0, 'ready', 10, 1, 'x', 1, '', '')"),
+        "");
+    ASSERT_EQ(
+        sql("WITH RECURSIVE n(i) AS (VALUES (1) UNION ALL SELECT i + 1 FROM n WHERE i < 60000) "
+            "INSERT INTO ledger SELECT i, 1, iif(i % 1000 = 1, 'run_started', 'printed'), i - (i - 1) % 1000, 1, 1, "
+            "'{}', 5, zeroblob(32) FROM n"),
+        "");
+    const auto begun = std::chrono::steady_clock::now();
+    { const Spool spool = open(); }
+    EXPECT_LT(std::chrono::steady_clock::now() - begun, std::chrono::seconds{20}); // it takes 0.3 s
+    EXPECT_EQ(sql("SELECT count(*) FROM ledger"), "60000");
+    EXPECT_EQ(sql("PRAGMA foreign_key_check"), "");
+}
+
+TEST_F(SchemaTest, shouldEnforceForeignKeysAfterAMigration) {
+    auto database = Database::open(path.string(), {}).value();
+    ASSERT_TRUE(database->execute("PRAGMA foreign_keys = ON").has_value());
+    ASSERT_TRUE(apply_migrations(*database, 0).has_value());
+    EXPECT_EQ(database->query_number("PRAGMA foreign_keys").value(), 1);
+    EXPECT_FALSE(database->execute("INSERT INTO ledger_segments VALUES (7, 1, 1, 'open', 1)").has_value());
 }
 
 } // namespace
