@@ -108,9 +108,8 @@ void add_printer_states(Families& families, const std::vector<daemon::PrinterVie
         return v.phase == daemon::PrinterPhase::idle ? Number{} : Number{good ? 1 : 0};
     };
     printer_gauge(families, printers, "linefeed_printer_up",
-                  "Whether the printer is connected and shows no error; none while it is idle.", [&](const View& v) {
-                      return in_use(v, v.link == daemon::LinkState::up && !shows_error(v));
-                  });
+                  "Whether the printer is connected and shows no error; none while it is idle.",
+                  [&](const View& v) { return in_use(v, v.link == daemon::LinkState::up && !shows_error(v)); });
     printer_gauge(families, printers, "linefeed_printer_link_up",
                   "Whether the printer is connected; none while it is idle.",
                   [&](const View& v) { return in_use(v, v.link == daemon::LinkState::up); });

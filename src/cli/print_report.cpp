@@ -1,7 +1,7 @@
 #include "cli/print_report.hpp"
 
-#include "daemon/doubt_evidence.hpp"
 #include "cli/progress_view.hpp"
+#include "daemon/doubt_evidence.hpp"
 #include "daemon/record_text.hpp"
 
 #include <nlohmann/json.hpp>

@@ -14,8 +14,8 @@ namespace linefeed::cli {
 /// The outcome is that of a printer which could not be asked; absent = nothing stands in the way.
 Result<std::optional<feeder::Outcome>> PrintCommand::settle_other_jobs(spool::Spool& spool,
                                                                        const daemon::JobRunSettings& settings) {
-    const auto hindrance = daemon::settle_other_jobs(
-        *threads_, spool, job_.id, settings, [this](daemon::JobRun& run, spool::JobId other) {
+    const auto hindrance =
+        daemon::settle_other_jobs(*threads_, spool, job_.id, settings, [this](daemon::JobRun& run, spool::JobId other) {
             view_.message("job " + std::to_string(static_cast<std::int64_t>(other)) +
                           " may have records in this printer: asking how far it came");
             watch(run);
@@ -84,7 +84,8 @@ Result<bool> PrintCommand::settle_doubt(spool::Spool& spool) {
         return false;
     }
     word_counts_ = false;
-    if (const auto settled = daemon::settle_by_operator(spool, job_, options_.operator_word, operator_name()); !settled) {
+    if (const auto settled = daemon::settle_by_operator(spool, job_, options_.operator_word, operator_name());
+        !settled) {
         return settled.error();
     }
     return true;

@@ -186,8 +186,8 @@ struct ImportRequest {
     std::string name{};           ///< shown instead of the file's own, e.g. of an upload; empty = the file's
     std::string layout{};         ///< name in the settings; empty = the default layout
     std::string printer{};        ///< queue it there; empty = no queue
-    bool autostart = false;     ///< may start by itself if its printer's queue does so too
-    bool again = false;         ///< import the same content once more, as a new job
+    bool autostart = false;       ///< may start by itself if its printer's queue does so too
+    bool again = false;           ///< import the same content once more, as a new job
 };
 
 struct ImportAnswer {
@@ -196,7 +196,8 @@ struct ImportAnswer {
     std::string report;     ///< JSON of intake::ImportReport: the rows that are bad
 };
 
-/// What an operator knows about records in doubt: exactly one is given. See daemon/operator_word.hpp for what is refused.
+/// What an operator knows about records in doubt: exactly one is given. See daemon/operator_word.hpp for what is
+/// refused.
 struct SettleRequest {
     enum class Policy { skip, reprint };
     std::optional<Policy> policy{};
@@ -215,8 +216,8 @@ struct ReprintRequest {
 struct JobFilter {
     std::string printer{};          ///< empty = all
     std::vector<JobPhase> phases{}; ///< empty = all
-    spool::JobId after{};         ///< newest first: those older than this one; 0 = from the newest
-    std::size_t limit = 100;      ///< 1…1000
+    spool::JobId after{};           ///< newest first: those older than this one; 0 = from the newest
+    std::size_t limit = 100;        ///< 1…1000
 };
 
 struct ServiceStatus {
@@ -281,7 +282,8 @@ public:
 
     /// What is printed on records of a job, ascending; those that it does not have are left out. At most 1000 at once.
     [[nodiscard]] virtual Result<std::vector<DoubtView::Record>> records(spool::JobId id, RecordRange records) = 0;
-    /// Records of a job with their fate, ascending. At most 1001 stretches at once; what follows them is asked for next.
+    /// Records of a job with their fate, ascending. At most 1001 stretches at once; what follows them is asked for
+    /// next.
     [[nodiscard]] virtual Result<std::vector<spool::HistoryStretch>> history(spool::JobId id, RecordRange records) = 0;
     [[nodiscard]] virtual Result<std::vector<spool::LedgerRow>> ledger(spool::JobId id, std::int64_t after,
                                                                        std::size_t limit) = 0;

@@ -34,8 +34,7 @@ Result<std::vector<OtherJob>> others_at(spool::Spool& spool, spool::JobId job, c
 Result<std::optional<Hindrance>> settle_other_jobs(RunThreads threads, spool::Spool& spool, spool::JobId job,
                                                    const JobRunSettings& settings, const WatchRun& watch) {
     Result<std::vector<OtherJob>> others{std::vector<OtherJob>{}};
-    threads.store.call(
-        [&](spool::Spool& owned) { others = others_at(owned, job, link::to_string(settings.printer)); });
+    threads.store.call([&](spool::Spool& owned) { others = others_at(owned, job, link::to_string(settings.printer)); });
     if (!others) {
         return others.error();
     }

@@ -1,5 +1,5 @@
-// What has to be known before a job is armed: other jobs may have records in the printer whose fate only it knows, until
-// it is flushed. They are settled first.
+// What has to be known before a job is armed: other jobs may have records in the printer whose fate only it knows,
+// until it is flushed. They are settled first.
 #pragma once
 
 #include "daemon/job_run.hpp"

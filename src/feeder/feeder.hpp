@@ -33,7 +33,7 @@ struct FeederSettings {
     /// Error codes that may be acknowledged: while it prints, and before a start besides those of mailing, whose truth
     /// the ledger knows by then.
     BoundedList<std::uint32_t, 16> acknowledge;
-    StoppingErrors stop_on; ///< besides those that the printer shows as errors
+    StoppingErrors stop_on;                                    ///< besides those that the printer shows as errors
     Duration status_interval = std::chrono::milliseconds{500}; ///< `?RS` while printing
     Duration retry_interval = std::chrono::milliseconds{20};   ///< between inquiries while waiting for a state
     /// From the first fill to `!GO`: the first product may come at once, and its record must lie in the FIFO 3 ms

@@ -37,15 +37,15 @@ public:
                                                      const ImportOptions& options) = 0;
 };
 
-/// The job for a file of these bytes, see BatchStore::find(). A job that gives way to an earlier one is not removed yet:
-/// `gives_way` = it.
+/// The job for a file of these bytes, see BatchStore::find(). A job that gives way to an earlier one is not removed
+/// yet: `gives_way` = it.
 struct FoundBatch {
     std::optional<KnownBatch> known;
     std::optional<spool::JobId> gives_way;
 };
 [[nodiscard]] Result<FoundBatch> find_batch(spool::Spool& spool, const spool::JobSpec& spec);
-/// The other job with the records of `job`, which has to go then; absent = it stays. Whoever decides so begins to remove
-/// it before anybody else asks: two of a kind would otherwise give way to each other.
+/// The other job with the records of `job`, which has to go then; absent = it stays. Whoever decides so begins to
+/// remove it before anybody else asks: two of a kind would otherwise give way to each other.
 [[nodiscard]] Result<std::optional<spool::Job>> earlier_job(spool::Spool& spool, const spool::Job& job);
 
 /// For whoever owns the spool. The spool must outlive it.

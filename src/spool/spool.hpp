@@ -173,8 +173,8 @@ public:
     [[nodiscard]] Result<std::vector<LedgerRow>> ledger_rows(JobId job, std::int64_t after, std::size_t limit);
     /// The newest row of the job; 0 = it has none. As long as that is the same, so is what is known of its records.
     [[nodiscard]] Result<std::int64_t> last_ledger_row(JobId job);
-    /// What was said of a run as it began and of the records that it has left in doubt, in order; costs the same however
-    /// long the run is.
+    /// What was said of a run as it began and of the records that it has left in doubt, in order; costs the same
+    /// however long the run is.
     [[nodiscard]] Result<std::vector<LedgerRow>> doubt_rows(JobId job, RunId run);
     /// The run_started row of the newest run of the job, and the newest run_ended row that follows it.
     struct LastRun {

@@ -27,9 +27,8 @@ Result<void> write_event(Database& database, const Event& event) {
 }
 
 Result<void> prune_events(Database& database) {
-    auto statement = database.prepare(
-        "DELETE FROM events WHERE id <= (SELECT max(id) FROM events) - ?1 AND "
-        "(SELECT max(id) FROM events) - (SELECT min(id) FROM events) >= ?1 + ?2");
+    auto statement = database.prepare("DELETE FROM events WHERE id <= (SELECT max(id) FROM events) - ?1 AND "
+                                      "(SELECT max(id) FROM events) - (SELECT min(id) FROM events) >= ?1 + ?2");
     if (!statement) {
         return statement.error();
     }

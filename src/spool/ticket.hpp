@@ -16,8 +16,8 @@ struct Ticket {
     std::string printer{};    ///< empty = none yet
     std::string layout{};     ///< empty = given with the import
     std::string created_by{}; ///< for people
-    bool autostart = false; ///< may start by itself, once
-    bool begun = false;     ///< a start was tried, and the job is not over: from then on only people start it
+    bool autostart = false;   ///< may start by itself, once
+    bool begun = false;       ///< a start was tried, and the job is not over: from then on only people start it
     bool cancelled = false;
     std::optional<std::int64_t> place{}; ///< orders the queue of its printer; absent = in no queue
     std::string message{};               ///< why it stands; one line

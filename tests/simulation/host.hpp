@@ -3,8 +3,8 @@
 // power.
 #pragma once
 
-#include "daemon/operator_word.hpp"
 #include "context.hpp"
+#include "daemon/operator_word.hpp"
 #include "judge.hpp"
 #include "ram_disk.hpp"
 #include "random.hpp"

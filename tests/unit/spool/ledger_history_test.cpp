@@ -66,9 +66,9 @@ TEST_F(LedgerHistoryTest, shouldGiveEveryKindItsState) {
     for (const HistoryStretch& stretch : history.stretches()) {
         states.push_back(stretch.state);
     }
-    EXPECT_EQ(states, (std::vector{RecordState::printed, RecordState::unused, RecordState::in_doubt,
-                                   RecordState::skipped, RecordState::released, RecordState::released,
-                                   RecordState::open}));
+    EXPECT_EQ(states,
+              (std::vector{RecordState::printed, RecordState::unused, RecordState::in_doubt, RecordState::skipped,
+                           RecordState::released, RecordState::released, RecordState::open}));
 }
 
 TEST_F(LedgerHistoryTest, shouldCutWhatALaterRowCovers) {

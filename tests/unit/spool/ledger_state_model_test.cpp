@@ -105,9 +105,9 @@ void expect_same_offer(const LedgerState& state, const Model& model, RecordRange
 
 TEST(LedgerStateModel, shouldAgreeWithAStateForEachRecord) {
     std::mt19937_64 random{20240607};
-    constexpr LedgerKind kinds[] = {LedgerKind::intent,     LedgerKind::printed, LedgerKind::unused,
-                                    LedgerKind::in_doubt,   LedgerKind::skipped, LedgerKind::released,
-                                    LedgerKind::reprint,    LedgerKind::run_started};
+    constexpr LedgerKind kinds[] = {LedgerKind::intent,   LedgerKind::printed,    LedgerKind::unused,
+                                    LedgerKind::in_doubt, LedgerKind::skipped,    LedgerKind::released,
+                                    LedgerKind::reprint,  LedgerKind::run_started};
     int applied = 0;
     for (int round = 0; round < 300; ++round) {
         LedgerState state;

@@ -13,7 +13,10 @@ using SpoolJournalTest = SpoolTest;
 
 TEST_F(SpoolJournalTest, shouldNumberEventsOverRestarts) {
     Event first{.time_ns = 5, .kind = "job.queued", .printer = "line1", .job = JobId{3}, .message = "waits"};
-    Event second{.time_ns = 6, .kind = "printer.warning", .printer = "", .record = RecordNumber{4294967295},
+    Event second{.time_ns = 6,
+                 .kind = "printer.warning",
+                 .printer = "",
+                 .record = RecordNumber{4294967295},
                  .message = "\x01\xFF"};
     {
         Spool spool = open();
@@ -50,8 +53,12 @@ TEST_F(SpoolJournalTest, shouldKeepTheNewestEvents) {
 
 TEST_F(SpoolJournalTest, shouldOnlyAppendToTheAuditLog) {
     Spool spool = open();
-    AuditEntry entry{.time_ns = 7, .who = "anna (uid 1000)", .what = "stop", .object = "printer line1",
-                     .detail = R"({"a":1})", .done = false};
+    AuditEntry entry{.time_ns = 7,
+                     .who = "anna (uid 1000)",
+                     .what = "stop",
+                     .object = "printer line1",
+                     .detail = R"({"a":1})",
+                     .done = false};
     ASSERT_TRUE(spool.add_audit(entry));
     const auto entries = spool.audit(0, 10).value();
     ASSERT_THAT(entries, SizeIs(1));

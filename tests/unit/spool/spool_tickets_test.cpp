@@ -11,8 +11,14 @@ using testing::IsEmpty;
 class SpoolTicketsTest : public SpoolTest {
 protected:
     static Ticket ticket(JobId job, const std::string& printer = "line1", std::optional<std::int64_t> place = {}) {
-        return {.job = job, .name = "a.csv", .printer = printer, .layout = "names", .created_by = "anna",
-                .autostart = true, .place = place, .message = "waits"};
+        return {.job = job,
+                .name = "a.csv",
+                .printer = printer,
+                .layout = "names",
+                .created_by = "anna",
+                .autostart = true,
+                .place = place,
+                .message = "waits"};
     }
     static std::vector<JobId> jobs_of(const Result<std::vector<Ticket>>& tickets) {
         std::vector<JobId> jobs;
