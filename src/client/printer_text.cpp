@@ -16,7 +16,8 @@ Cell state_of(const Json& printer) {
         return {phase == "idle" ? "error" : phase + ", error", Colour::bad};
     }
     if (phase == "idle") { // between jobs there is no link
-        return {phase};
+        const bool held = flag(printer, "held"); // stopped, and no queue starts by itself
+        return held ? Cell{"stopped", Colour::warning} : Cell{phase};
     }
     return link == "up" ? Cell{phase, Colour::good} : Cell{phase + ", no link", Colour::bad};
 }

@@ -100,8 +100,14 @@ Result<ExitCode> start(Service& service, const StartRequest& request) {
     return now ? Result<ExitCode>{ExitCode::done} : now.error();
 }
 
-Result<void> settle(Service& service, std::int64_t job, const OperatorWord& word) {
-    const auto settled = service.post(job_path(job, "/settle"), settle_request(word));
+/// `as_of` = what the operator has been shown: his word holds for that only. Absent = he speaks of what he knows
+/// himself.
+Result<void> settle(Service& service, std::int64_t job, const OperatorWord& word, std::optional<std::int64_t> as_of) {
+    Json request = settle_request(word);
+    if (as_of) {
+        request["as_of"] = *as_of;
+    }
+    const auto settled = service.post(job_path(job, "/settle"), request);
     return settled ? Result<void>{} : settled.error();
 }
 
@@ -129,6 +135,7 @@ std::optional<OperatorWord> ask(const Json& doubt, bool json) {
 
 Result<ExitCode> settle_job(Service& service, const SettleOptions& options) {
     std::optional<OperatorWord> word;
+    std::optional<std::int64_t> as_of;
     if (options.word.given()) {
         word = options.word;
     } else {
@@ -148,8 +155,9 @@ Result<ExitCode> settle_job(Service& service, const SettleOptions& options) {
         if (!word) {
             return ExitCode::in_doubt;
         }
+        as_of = number(*doubt, "as_of");
     }
-    if (const auto settled = settle(service, options.job, *word); !settled) {
+    if (const auto settled = settle(service, options.job, *word, as_of); !settled) {
         return settled.error();
     }
     const auto now = show_job_now(service, options.job, options.common.json);
@@ -188,7 +196,7 @@ ExitCode run_start(const StartOptions& options) {
 ExitCode run_resume(const ResumeOptions& options) {
     return run_with_service(options.common, [&](Service& service) -> Result<ExitCode> {
         if (options.word.given()) {
-            if (const auto settled = settle(service, options.job, options.word); !settled) {
+            if (const auto settled = settle(service, options.job, options.word, std::nullopt); !settled) {
                 return settled.error();
             }
         }

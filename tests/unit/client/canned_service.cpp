@@ -212,6 +212,7 @@ Json printer_json(const std::string& name) {
             {"job", nullptr},
             {"queue", Json::array()},
             {"autostart", false},
+            {"held", false},
             {"figures",
              {{"fifo_depth", 0},
               {"fifo_entries", 0},
