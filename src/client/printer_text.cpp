@@ -15,7 +15,7 @@ Cell state_of(const Json& printer) {
     if (!member(printer, "error").is_null()) {
         return {phase == "idle" ? "error" : phase + ", error", Colour::bad};
     }
-    if (phase == "idle") { // between jobs there is no link
+    if (phase == "idle") {                       // between jobs there is no link
         const bool held = flag(printer, "held"); // stopped, and no queue starts by itself
         return held ? Cell{"stopped", Colour::warning} : Cell{phase};
     }

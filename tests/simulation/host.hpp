@@ -43,6 +43,8 @@ public:
     [[nodiscard]] bool records_open() const { return records_open_; }
     /// Nothing is left to be sent in this run.
     [[nodiscard]] bool all_sent() const;
+    /// When this run has taken over an earlier one, found printing; absent = it has not.
+    [[nodiscard]] std::optional<Instant> taken_over() const;
 
     void request_stop();
     void pause(Duration duration);

@@ -69,6 +69,7 @@ void Host::on_effect(const session::Effect& effect) {
         run.store.push(*begin);
     } else if (const auto* adopt = std::get_if<feeder::AdoptRun>(&effect)) {
         context_.trace.note(context_.now, "takes over", adopt->printed_through.value(), adopt->sent_through.value());
+        run.taken_over = context_.now;
         run.store.push(*adopt);
     } else if (const auto* release = std::get_if<session::ReleasePage>(&effect)) {
         run.store.push(daemon::PageReturned{release->page});

@@ -28,6 +28,10 @@ bool Host::all_sent() const {
     return run_ && !run_->session.feeder().refill().range().empty() && run_->session.feeder().refill().all_sent();
 }
 
+std::optional<Instant> Host::taken_over() const {
+    return run_ ? run_->taken_over : std::nullopt;
+}
+
 void Host::begin_run(const std::optional<daemon::OpenIssue>& open) {
     ++context_.counts.runs;
     const feeder::FeederPlan plan = daemon::make_plan(open, job_, wanted_);

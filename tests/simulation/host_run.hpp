@@ -17,7 +17,8 @@ struct Host::Run {
     std::uint64_t generation;
     std::uint64_t connection = 0; ///< 0 = none
     bool open = false;
-    bool finished = false; ///< End is on its way to the store
+    bool finished = false;             ///< End is on its way to the store
+    std::optional<Instant> taken_over; ///< an earlier run: when
     feeder::Outcome outcome;
     std::optional<feeder::ConfirmPrinted> confirm;
     std::optional<feeder::AskIntent> intent;

@@ -33,6 +33,11 @@ bool Scenario::supply_is_sufficient() const {
     return damage == 0 && per_second * supply < depth / 2 - 1 && per_second * ledger < depth;
 }
 
+Duration Scenario::first_refill() const {
+    const int parts = (split > 0 ? 4 : 1) + (slow_write > 0 ? 4 : 0); // as above
+    return commit.high * 2 + gather + latency.high * parts + printer.margin + std::chrono::milliseconds{2};
+}
+
 void Scenario::text_of(std::uint32_t number, std::string& out) const {
     static constexpr char digits[] = "0123456789ABCDEF";
     std::uint32_t mixed = (number ^ static_cast<std::uint32_t>(seed)) * 2654435761U;

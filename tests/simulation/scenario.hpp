@@ -93,6 +93,8 @@ struct Scenario {
     }
     /// Network, disk and the beat of the feeder leave no excuse for an underrun.
     [[nodiscard]] bool supply_is_sufficient() const;
+    /// The longest that a first record needs from the takeover of a printer to its PrintGo: ledger, way and margin.
+    [[nodiscard]] Duration first_refill() const;
     /// What stands on the product of a record: the fields joined by TAB.
     void text_of(std::uint32_t number, std::string& out) const;
     [[nodiscard]] std::uint32_t first() const { return base + 1; }

@@ -129,7 +129,9 @@ private:
     [[nodiscard]] bool underrun_is_explained() const {
         const auto phase = host_.phase();
         const bool feeds = (phase == feeder::Phase::starting || phase == feeder::Phase::printing) && !host_.all_sent();
-        return !feeds || !context_.scenario.supply_is_sufficient() || faults_.excuses_underrun();
+        const auto taken_over = host_.taken_over(); // with what little was left in the printer then
+        const bool too_late = taken_over && context_.now < *taken_over + context_.scenario.first_refill();
+        return !feeds || too_late || !context_.scenario.supply_is_sufficient() || faults_.excuses_underrun();
     }
 
     void printer_receives(std::uint64_t connection, std::string_view bytes) override {
