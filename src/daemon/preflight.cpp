@@ -206,7 +206,7 @@ std::optional<Finding> counter(const std::optional<protocol::Counters>& counters
     return ok(check, std::to_string(*counters->total) + " prints in its life");
 }
 
-Finding modes(const ConversationOddities& oddities) {
+Finding modes(const printer::ConversationOddities& oddities) {
     constexpr const char* check = "modes";
     std::string left_on;
     const auto add = [&left_on](bool on, const char* what) {

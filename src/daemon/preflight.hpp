@@ -5,7 +5,7 @@
 
 #include "config/settings.hpp"
 #include "daemon/operations.hpp"
-#include "daemon/printer_client.hpp"
+#include "printer/printer_client.hpp"
 
 #include <optional>
 #include <string>
@@ -22,12 +22,12 @@ struct PreflightFacts {
     std::optional<protocol::JobName> job;
     std::optional<protocol::MailStatus> mail; ///< the second of two answers
     std::optional<protocol::Counters> counters;
-    ConversationOddities oddities;
+    printer::ConversationOddities oddities;
     std::optional<bool> second_connection; ///< whether another one at the same time was answered
 };
 
 /// Blocks: at most a connection time-out for each endpoint and some reply time-outs.
-[[nodiscard]] PreflightFacts gather_facts(const ClientSettings& settings);
+[[nodiscard]] PreflightFacts gather_facts(const printer::ClientSettings& settings);
 
 /// What is expected of the printer.
 struct PreflightRules {

@@ -7,21 +7,21 @@ using protocol::Parameter;
 
 namespace {
 
-bool is_answered(const ClientSettings& settings) {
-    const auto second = PrinterClient::connect(settings);
+bool is_answered(const printer::ClientSettings& settings) {
+    const auto second = printer::PrinterClient::connect(settings);
     return second && (*second)->ask<protocol::MachineStatus>(Parameter::RS).has_value();
 }
 
 } // namespace
 
-PreflightFacts gather_facts(const ClientSettings& settings) {
+PreflightFacts gather_facts(const printer::ClientSettings& settings) {
     PreflightFacts facts;
-    const auto connected = PrinterClient::connect(settings);
+    const auto connected = printer::PrinterClient::connect(settings);
     if (!connected) {
         facts.unreachable = connected.error().message;
         return facts;
     }
-    PrinterClient& printer = **connected;
+    printer::PrinterClient& printer = **connected;
     facts.machine = printer.ask<protocol::MachineStatus>(Parameter::RS);
     const bool talks = facts.machine && facts.machine->machine != protocol::MachineState::standby;
     if (talks) { // in standby nothing else is answered

@@ -8,7 +8,7 @@
 #include "daemon/operations.hpp"
 #include "daemon/other_jobs.hpp"
 #include "daemon/preflight.hpp"
-#include "daemon/printer_commands.hpp"
+#include "printer/printer_commands.hpp"
 #include "service/event_log.hpp"
 #include "service/spool_access.hpp"
 
@@ -82,7 +82,7 @@ public:
     /// Without its queue.
     [[nodiscard]] daemon::PrinterView view();
     [[nodiscard]] Result<std::vector<daemon::Finding>> preflight();
-    /// See daemon::acknowledge().
+    /// See printer::acknowledge().
     [[nodiscard]] Result<void> acknowledge(std::uint32_t error);
     /// Holds the panel for so long from now, or releases it.
     [[nodiscard]] Result<void> hold_panel(std::optional<Duration> time);
@@ -98,8 +98,8 @@ private:
                std::optional<RecordNumber> record = {});
 
     // line_printer.cpp: the printer besides printing
-    [[nodiscard]] Result<daemon::ClientSettings> client_settings() const;
-    [[nodiscard]] std::vector<daemon::Finding> look_at_printer(const daemon::ClientSettings& client,
+    [[nodiscard]] Result<printer::ClientSettings> client_settings() const;
+    [[nodiscard]] std::vector<daemon::Finding> look_at_printer(const printer::ClientSettings& client,
                                                                bool may_be_printing);
     void hear(const daemon::PreflightFacts& facts);
     void hear(const daemon::RunProgress& progress);
@@ -146,7 +146,7 @@ private:
     };
     Heard heard_;
 
-    std::shared_ptr<daemon::PanelHold> panel_;
+    std::shared_ptr<printer::PanelHold> panel_;
 
     std::mutex panel_orders_; ///< one at a time holds or releases the panel, also while the printer is talked to
 

@@ -8,7 +8,7 @@
 
 namespace linefeed::service {
 
-Result<daemon::ClientSettings> Line::client_settings() const {
+Result<printer::ClientSettings> Line::client_settings() const {
     const SharedSettings all = settings();
     const config::PrinterSettings* const own = all->printer(printer_);
     if (own == nullptr) {
@@ -18,14 +18,14 @@ Result<daemon::ClientSettings> Line::client_settings() const {
     if (!endpoints) {
         return endpoints.error();
     }
-    return daemon::ClientSettings{.address = link::to_string(own->address),
-                                  .endpoints = std::move(*endpoints),
-                                  .escapes = own->profile.escapes,
-                                  .connect_timeout = own->connect_timeout,
-                                  .reply_timeout = own->reply_timeout};
+    return printer::ClientSettings{.address = link::to_string(own->address),
+                                   .endpoints = std::move(*endpoints),
+                                   .escapes = own->profile.escapes,
+                                   .connect_timeout = own->connect_timeout,
+                                   .reply_timeout = own->reply_timeout};
 }
 
-std::vector<daemon::Finding> Line::look_at_printer(const daemon::ClientSettings& client, bool may_be_printing) {
+std::vector<daemon::Finding> Line::look_at_printer(const printer::ClientSettings& client, bool may_be_printing) {
     const SharedSettings all = settings();
     std::string known_serial_number;
     {
@@ -47,7 +47,7 @@ Result<void> Line::acknowledge(std::uint32_t error) {
     if (!client) {
         return client.error();
     }
-    const auto left = daemon::acknowledge(*client, error);
+    const auto left = printer::acknowledge(*client, error);
     if (!left) {
         return left.error();
     }
@@ -60,7 +60,7 @@ Result<void> Line::acknowledge(std::uint32_t error) {
 
 Result<void> Line::hold_panel(std::optional<Duration> time) {
     const std::lock_guard orders{panel_orders_};
-    std::shared_ptr<daemon::PanelHold> panel;
+    std::shared_ptr<printer::PanelHold> panel;
     {
         const std::lock_guard lock{mutex_};
         panel = time ? panel_ : std::exchange(panel_, nullptr);
@@ -73,7 +73,7 @@ Result<void> Line::hold_panel(std::optional<Duration> time) {
         if (!client) {
             return client.error();
         }
-        auto fresh = std::make_shared<daemon::PanelHold>(*client);
+        auto fresh = std::make_shared<printer::PanelHold>(*client);
         {
             const std::lock_guard lock{mutex_};
             panel_ = fresh;

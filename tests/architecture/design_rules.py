@@ -14,9 +14,10 @@ MAY_USE = {
     "intake": {"base", "protocol", "spool"},
     "simulator": {"base", "protocol"},
     "config": {"base", "protocol", "feeder", "link"},
-    "daemon": {"base", "protocol", "feeder", "session", "link", "spool", "intake", "config"},
+    "printer": {"base", "protocol"},
+    "daemon": {"base", "protocol", "feeder", "session", "link", "printer", "spool", "intake", "config"},
     "api": {"base", "protocol", "link", "spool", "config", "daemon"},
-    "service": {"base", "protocol", "feeder", "session", "link", "spool", "intake", "config", "daemon"},
+    "service": {"base", "protocol", "feeder", "session", "link", "printer", "spool", "intake", "config", "daemon"},
     "cli": {"base", "protocol", "feeder", "session", "link", "spool", "intake", "config", "daemon"},
     "client": {"base", "protocol", "spool", "intake", "config", "daemon", "api", "cli"},
     "linefeed": {"base", "protocol", "intake", "daemon", "cli", "client"},
@@ -63,7 +64,7 @@ IMPURE_CODE = {
 # Outside library -> the only folders that may include it.
 LIBRARY_FOLDERS = {
     r"sqlite3(ext)?\.h": {"spool", "intake"},
-    r"boost/(asio|beast)(/.*|\.hpp)?": {"base", "link", "simulator", "daemon", "api"},
+    r"boost/(asio|beast)(/.*|\.hpp)?": {"base", "link", "printer", "simulator", "daemon", "api"},
     r"prometheus/.*": {"api"},
     r"CLI/.*": {"linefeed", "linefeedd", "simulator"},
     r"openssl/.*": {"spool", "api"},

@@ -1,7 +1,7 @@
 // Facts in, findings out: every state of a printer in words, with what to do. And the whole look at the simulated
 // printer and at peers that are none.
 #include "daemon/preflight.hpp"
-#include "peer.hpp"
+#include "support/peer.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,6 +11,8 @@
 namespace linefeed::daemon {
 namespace {
 
+using printer::Peer;
+using printer::RunningSimulator;
 using protocol::MachineState;
 using protocol::NozzleState;
 using testing::ElementsAre;

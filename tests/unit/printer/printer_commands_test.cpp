@@ -1,6 +1,6 @@
 // Acknowledging one error and no other; and the panel, held and always released.
-#include "daemon/printer_commands.hpp"
-#include "peer.hpp"
+#include "printer/printer_commands.hpp"
+#include "support/peer.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 #include <optional>
 #include <vector>
 
-namespace linefeed::daemon {
+namespace linefeed::printer {
 namespace {
 
 using std::chrono::milliseconds;
@@ -183,4 +183,4 @@ TEST(PanelHold, shouldSayThatThereIsNoPrinter) {
 }
 
 } // namespace
-} // namespace linefeed::daemon
+} // namespace linefeed::printer

@@ -1,4 +1,4 @@
-#include "daemon/printer_client.hpp"
+#include "printer/printer_client.hpp"
 
 #include "protocol/frame_encoder.hpp"
 
@@ -7,7 +7,7 @@
 
 #include <utility>
 
-namespace linefeed::daemon {
+namespace linefeed::printer {
 
 namespace asio = boost::asio;
 using boost::system::error_code;
@@ -188,4 +188,4 @@ void PrinterClient::note_filling(std::string_view bytes) {
     }
 }
 
-} // namespace linefeed::daemon
+} // namespace linefeed::printer

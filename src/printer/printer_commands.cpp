@@ -1,9 +1,9 @@
-#include "daemon/printer_commands.hpp"
+#include "printer/printer_commands.hpp"
 
 #include <algorithm>
 #include <string>
 
-namespace linefeed::daemon {
+namespace linefeed::printer {
 
 using protocol::Action;
 using protocol::MachineStatus;
@@ -144,4 +144,4 @@ void PanelHold::resume() {
     client_.reset();
 }
 
-} // namespace linefeed::daemon
+} // namespace linefeed::printer

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "base/failure.hpp"
-#include "daemon/printer_client.hpp"
+#include "printer/printer_client.hpp"
 #include "protocol/printer_error.hpp"
 
 #include <atomic>
@@ -15,7 +15,7 @@
 #include <optional>
 #include <thread>
 
-namespace linefeed::daemon {
+namespace linefeed::printer {
 
 /// `!EQ`, if the printer still shows the error with this number (PrinterError::code(), or without bit 24); there is no
 /// blind one. The error that it shows then, if another stood behind it. Blocks. FailureKind::stopped: it shows
@@ -61,4 +61,4 @@ private:
     std::thread thread_;
 };
 
-} // namespace linefeed::daemon
+} // namespace linefeed::printer

@@ -1,7 +1,7 @@
 // Whoever listens where a printer should: any number of connections, frames in, and a script that says what comes back.
 #pragma once
 
-#include "daemon/printer_client.hpp"
+#include "printer/printer_client.hpp"
 #include "protocol/frame_decoder.hpp"
 #include "simulator/simulator.hpp"
 
@@ -18,7 +18,7 @@
 #include <thread>
 #include <vector>
 
-namespace linefeed::daemon {
+namespace linefeed::printer {
 
 inline ClientSettings client_of(std::uint16_t port) {
     ClientSettings settings;
@@ -164,4 +164,4 @@ private:
     std::thread thread_;
 };
 
-} // namespace linefeed::daemon
+} // namespace linefeed::printer

@@ -20,7 +20,7 @@
 #include <string_view>
 #include <vector>
 
-namespace linefeed::daemon {
+namespace linefeed::printer {
 
 struct ClientSettings {
     std::string address;                                   ///< for people
@@ -84,4 +84,4 @@ private:
     std::array<char, 4096> buffer_{};
 };
 
-} // namespace linefeed::daemon
+} // namespace linefeed::printer

@@ -1,12 +1,12 @@
 // Short conversations: with the simulated printer, and with peers that are silent, slow, mad, or gone.
-#include "daemon/printer_client.hpp"
-#include "peer.hpp"
+#include "printer/printer_client.hpp"
+#include "support/peer.hpp"
 
 #include <gtest/gtest.h>
 
 #include <chrono>
 
-namespace linefeed::daemon {
+namespace linefeed::printer {
 namespace {
 
 using protocol::Parameter;
@@ -135,4 +135,4 @@ TEST(PrinterClient, shouldTryTheNextEndpoint) {
 }
 
 } // namespace
-} // namespace linefeed::daemon
+} // namespace linefeed::printer
