@@ -9,6 +9,7 @@
 #include "daemon/other_jobs.hpp"
 #include "daemon/preflight.hpp"
 #include "printer/printer_commands.hpp"
+#include "printer/task.hpp"
 #include "service/event_log.hpp"
 #include "service/spool_access.hpp"
 
@@ -84,6 +85,10 @@ public:
     [[nodiscard]] Result<std::vector<daemon::Finding>> preflight();
     /// See printer::acknowledge().
     [[nodiscard]] Result<void> acknowledge(std::uint32_t error);
+    /// Carries out one of printer::tasks(); `arguments` and the answer are JSON. What disturbs the feeding or loses
+    /// what is in the printer is refused while a job is on the line, and no job starts while that is being done:
+    /// FailureKind::stopped.
+    [[nodiscard]] Result<std::string> carry_out(const printer::Task& task, std::string_view arguments);
     /// Holds the panel for so long from now, or releases it.
     [[nodiscard]] Result<void> hold_panel(std::optional<Duration> time);
     [[nodiscard]] const std::string& printer() const { return printer_; }
@@ -98,6 +103,7 @@ private:
                std::optional<RecordNumber> record = {});
 
     // line_printer.cpp: the printer besides printing
+    [[nodiscard]] Result<void> reserve();
     [[nodiscard]] Result<printer::ClientSettings> client_settings() const;
     [[nodiscard]] std::vector<daemon::Finding> look_at_printer(const printer::ClientSettings& client,
                                                                bool may_be_printing);
@@ -130,6 +136,7 @@ private:
     std::uint64_t orders_ = 0;           ///< so many so far
     bool begun_ = false;                 ///< the thread has taken the order
     bool checking_ = false;              ///< preflight
+    std::uint32_t reserved_ = 0; ///< for so many commands that no job may meet: none starts meanwhile
     bool stop_requested_ = false;
     bool held_ = false; ///< stopped by an operator
     bool closing_ = false;

@@ -1,6 +1,7 @@
 // The printer besides printing: a look at it before a start or for whoever asks, one error acknowledged, the panel
 // held. Each is a short conversation on a connection of its own.
 #include "daemon/wall_clock.hpp"
+#include "printer/tasks.hpp"
 #include "service/line.hpp"
 
 #include <chrono>
@@ -55,6 +56,52 @@ Result<void> Line::acknowledge(std::uint32_t error) {
     if (heard_.machine) {
         heard_.machine->error = *left;
     }
+    return {};
+}
+
+Result<std::string> Line::carry_out(const printer::Task& task, std::string_view arguments) {
+    auto read = printer::Arguments::parse(task.arguments, arguments);
+    if (!read) {
+        return read.error();
+    }
+    const auto danger = printer::danger_of(task, *read);
+    if (!danger) {
+        return danger.error();
+    }
+    const auto client = client_settings();
+    if (!client) {
+        return client.error();
+    }
+    std::shared_ptr<void> reservation;
+    if (*danger != printer::Danger::none) {
+        if (auto reserved = reserve(); !reserved) {
+            return reserved.error();
+        }
+        reservation = {this, [](Line* line) {
+                           const std::lock_guard lock{line->mutex_};
+                           --line->reserved_;
+                       }};
+    }
+    const auto connected = printer::PrinterClient::connect(*client);
+    if (!connected) {
+        return connected.error();
+    }
+    const SharedSettings all = settings();
+    const auto meaning = [&all](const protocol::PrinterError& error) {
+        const config::ErrorEntry* const entry = all->errors.find(error);
+        return entry == nullptr ? printer::ErrorWords{} : printer::ErrorWords{entry->meaning, entry->advice};
+    };
+    return printer::carry_out_as_text(task, **connected, {std::move(*read), meaning});
+}
+
+/// Before a command that no job may meet.
+Result<void> Line::reserve() {
+    const std::lock_guard lock{mutex_};
+    if (active_) {
+        return Failure{FailureKind::stopped, name_of(*active_) + " is on printer " + printer_ +
+                                                 ": stop it first (linefeed stop " + printer_ + ")"};
+    }
+    ++reserved_;
     return {};
 }
 
