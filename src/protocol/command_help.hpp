@@ -3,6 +3,8 @@
 
 #include "protocol/command_table.hpp"
 
+#include <functional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -13,8 +15,14 @@ namespace linefeed::protocol {
 /// E.g. "disturbs the line".
 [[nodiscard]] std::string_view to_string(Risk risk);
 
+/// What else a table tells of each command.
+struct CommandColumn {
+    std::string_view title;
+    std::function<std::string(const Command&)> cell;
+};
+
 /// Every command with its direction, parameters, risk and description: a Markdown table for each section of the
-/// protocol. docs/commands.md is this text.
-[[nodiscard]] std::string commands_as_markdown();
+/// protocol. With what is known of each by the whole program it is deploy/doc/commands.md.
+[[nodiscard]] std::string commands_as_markdown(std::span<const CommandColumn> columns = {});
 
 } // namespace linefeed::protocol

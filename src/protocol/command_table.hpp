@@ -90,6 +90,7 @@ inline constexpr auto command_table = std::to_array<Command>({
     // Section 3
     table::inquiry(Parameter::AC, "AC", "all counters of the job"),
     table::inquiry(Parameter::CC, "CC", "product and print counters"),
+    table::inquiry(Parameter::CP, "CP", "working start and end values of a counter", "counter id, 1 start or 2 end"),
     table::inquiry(Parameter::DL, "DL", "date and time"),
     table::inquiry(Parameter::DS, "DS", "free flash memory"),
     table::inquiry(Parameter::EL, "EL", "error list"),
@@ -108,6 +109,7 @@ inline constexpr auto command_table = std::to_array<Command>({
     table::inquiry(Parameter::RS, "RS", "machine state"),
     table::inquiry(Parameter::SC, "SC", "service intervals"),
     table::inquiry(Parameter::SH, "SH", "service history"),
+    table::inquiry(Parameter::SL, "SL", "tank levels (newer firmware)"),
     table::inquiry(Parameter::SM, "SM", "mailing status"),
     table::inquiry(Parameter::VS, "VS", "versions"),
 
@@ -156,6 +158,7 @@ inline constexpr auto command_table = std::to_array<Command>({
     table::row(Parameter::SC, "SC", table::to_host, "service intervals", "hours, days"),
     table::row(Parameter::SH, "SH", table::to_host, "service history",
                "operating hours, hours at the last service, its date"),
+    table::row(Parameter::SL, "SL", table::to_host, "tank levels (newer firmware)", "four levels"),
     table::row(Parameter::SM, "SM", table::to_host, "mailing status",
                "depth, entries, last printed record number, stop-at number, last print finished, PrintGos (newer "
                "firmware)"),

@@ -63,6 +63,7 @@ enum class Parameter {
     RS,
     SC,
     SH,
+    SL, ///< newer firmware only (field notes)
     SM,
     SW,
     VS,

@@ -1,5 +1,5 @@
-// What the printer tells about its machine: `=DL =DS =HS =MC =MS =RS =SC =SH =VS` (protocol, section 4). Each message
-// describes its fields once; parser, encoder and whatever shows messages to people walk over that description.
+// What the printer tells about its machine: `=DL =DS =HS =MC =MS =RS =SC =SH =SL =VS` (protocol, section 4). Each
+// message describes its fields once; parser, encoder and whatever shows messages to people walk over that description.
 #pragma once
 
 #include "protocol/commands.hpp"
@@ -7,6 +7,7 @@
 #include "protocol/printer_error.hpp"
 #include "protocol/printer_time.hpp"
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -184,6 +185,21 @@ struct ServiceHistory {
         visitor.optional("last_service_date", "a packed date", self.last_service_date);
     }
     friend bool operator==(const ServiceHistory&, const ServiceHistory&) = default;
+};
+
+/// `=SL`, printer to host: levels of the tanks, on newer firmware. Neither their unit nor which tank is which is
+/// documented (field notes, "Firmware habits"): as they came.
+struct TankLevels {
+    static constexpr Parameter parameter = Parameter::SL;
+    static constexpr std::array<std::string_view, 4> keys{"level_1", "level_2", "level_3", "level_4"};
+    std::array<MaybeNumber, keys.size()> levels{};
+
+    static void describe(auto& visitor, auto& self) {
+        for (std::size_t i = 0; i < keys.size(); ++i) {
+            visitor.added(keys[i], "a level", self.levels[i]);
+        }
+    }
+    friend bool operator==(const TankLevels&, const TankLevels&) = default;
 };
 
 /// `=VS`, printer to host: versions. Missing strings are empty.

@@ -49,13 +49,14 @@ struct MalformedMessage {
     friend bool operator==(const MalformedMessage&, const MalformedMessage&) = default;
 };
 
-using Message = std::variant<UnknownMessage, MalformedMessage, ActionMessage, InquiryMessage, MachineStatus, MailStatus,
-                             StopAt, Counters, VersionInfo, JobName, MailRecord, ClockTime, FreeFlash, HydraulicState,
-                             MainConfiguration, ActorStates, ServiceIntervals, ServiceHistory, ExternalStates,
-                             InputConfiguration, OutputConfiguration, OutputChange, JobCounters, CounterParameter,
-                             CounterReset, ExternText, PrintParameter, WysiwygStart, WysiwygLine, NextCrc, CrcFailed,
-                             BlockLength, ErrorListBlock, EventListBlock, ScriptLine, DirectoryRequest, DirectoryBlock,
-                             FileDeletion, FileRequest, FileHeader, FileBlock, FileAcknowledgement>;
+using Message =
+    std::variant<UnknownMessage, MalformedMessage, ActionMessage, InquiryMessage, MachineStatus, MailStatus, StopAt,
+                 Counters, VersionInfo, JobName, MailRecord, ClockTime, FreeFlash, HydraulicState, MainConfiguration,
+                 ActorStates, ServiceIntervals, ServiceHistory, TankLevels, ExternalStates, InputConfiguration,
+                 OutputConfiguration, OutputChange, JobCounters, CounterParameter, CounterReset, ExternText,
+                 PrintParameter, WysiwygStart, WysiwygLine, NextCrc, CrcFailed, BlockLength, ErrorListBlock,
+                 EventListBlock, ScriptLine, DirectoryRequest, DirectoryBlock, FileDeletion, FileRequest, FileHeader,
+                 FileBlock, FileAcknowledgement>;
 
 /// Decodes a frame. Never fails: what cannot be read is MalformedMessage or UnknownMessage. Allocates only for messages
 /// with text or lists; RS, SM, CC and actions never do.

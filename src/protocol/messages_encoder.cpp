@@ -99,6 +99,7 @@ template void append_message(std::string&, const MainConfiguration&);
 template void append_message(std::string&, const ActorStates&);
 template void append_message(std::string&, const ServiceIntervals&);
 template void append_message(std::string&, const ServiceHistory&);
+template void append_message(std::string&, const TankLevels&);
 template void append_message(std::string&, const ExternalStates&);
 template void append_message(std::string&, const InputConfiguration&);
 template void append_message(std::string&, const OutputConfiguration&);

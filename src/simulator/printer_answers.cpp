@@ -129,6 +129,8 @@ std::optional<Message> PrinterModel::simple_answer(const protocol::InquiryMessag
         return health::service_intervals();
     case Parameter::SH:
         return health::service_history();
+    case Parameter::SL:
+        return settings_.habits.tank_levels ? std::optional<Message>{health::tank_levels()} : std::nullopt;
     case Parameter::SM:
         return mail_status_answer();
     case Parameter::VS:

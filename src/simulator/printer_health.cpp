@@ -74,6 +74,10 @@ protocol::ServiceHistory service_history() {
     return {operating_hours, last_service_hours, static_cast<std::int32_t>(protocol::pack_date(last_service))};
 }
 
+protocol::TankLevels tank_levels() {
+    return {{19, 12, 0, 0}}; // as a real printer showed (field notes)
+}
+
 protocol::EventEntry event(const protocol::PrinterTime& time, protocol::MachineState machine) {
     return {time,          compressor_pulses,  solvent_sips, ink_sips, mixing_ratio,
             pressure_mbar, diaphragm_position, fall_time_ms, machine};

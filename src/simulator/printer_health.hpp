@@ -15,6 +15,7 @@ inline constexpr std::uint32_t max_speed_dm_per_min = 3000;
 [[nodiscard]] protocol::ActorStates actor_states(protocol::NozzleState nozzle, bool printing);
 [[nodiscard]] protocol::ServiceIntervals service_intervals();
 [[nodiscard]] protocol::ServiceHistory service_history();
+[[nodiscard]] protocol::TankLevels tank_levels();
 /// What the event list notes at that time.
 [[nodiscard]] protocol::EventEntry event(const protocol::PrinterTime& time, protocol::MachineState machine);
 

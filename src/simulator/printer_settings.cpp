@@ -12,7 +12,7 @@ struct NamedHabit {
     bool Habits::*member;
 };
 
-constexpr std::array<NamedHabit, 13> switches{{
+constexpr std::array<NamedHabit, 14> switches{{
     {"ignore-stop-at", &Habits::ignore_stop_at},
     {"stop-at-only-while-printing", &Habits::stop_at_only_while_printing},
     {"stale-mail-status", &Habits::stale_mail_status},
@@ -26,6 +26,7 @@ constexpr std::array<NamedHabit, 13> switches{{
     {"escaped-paths", &Habits::escaped_paths},
     {"missing-jobs-refused", &Habits::missing_jobs_refused},
     {"no-total-counter", &Habits::no_total_counter},
+    {"tank-levels", &Habits::tank_levels},
 }};
 
 } // namespace

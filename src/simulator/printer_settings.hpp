@@ -42,13 +42,14 @@ struct Habits {
     bool escaped_paths = false;               ///< `\` of paths is doubled in answers, as the escape rule demands
     bool missing_jobs_refused = false;        ///< `=JL` with a path where no file is leaves the job as it is
     bool no_total_counter = false;            ///< `=CC` ends before the total print counter
+    bool tank_levels = false;                 ///< `?SL` is answered
     LineEnd line_end = LineEnd::cr;
 
     friend bool operator==(const Habits&, const Habits&) = default;
 };
 
 /// The names that set_habit() knows, in the order of help texts.
-inline constexpr std::array<std::string_view, 15> habit_names{"ignore-stop-at",
+inline constexpr std::array<std::string_view, 16> habit_names{"ignore-stop-at",
                                                               "stop-at-only-while-printing",
                                                               "stale-mail-status",
                                                               "sixth-value",
@@ -61,6 +62,7 @@ inline constexpr std::array<std::string_view, 15> habit_names{"ignore-stop-at",
                                                               "escaped-paths",
                                                               "missing-jobs-refused",
                                                               "no-total-counter",
+                                                              "tank-levels",
                                                               "crlf",
                                                               "lfcr"};
 

@@ -24,7 +24,7 @@ constexpr std::array<std::pair<Action, std::string_view>, 22> actions_of_the_man
 }};
 
 constexpr std::string_view parameters_of_the_manual =
-    "AC CC CM CO CP DL DS EL ET EV EX FC FL GW HS IC JB JL MC MR MS NR OC PR RC RS SC SH SM SW VS";
+    "AC CC CM CO CP DL DS EL ET EV EX FC FL GW HS IC JB JL MC MR MS NR OC PR RC RS SC SH SL SM SW VS";
 
 TEST(Commands, shouldKnowEveryActionOfTheManualBothWays) {
     for (const auto& [action, letters] : actions_of_the_manual) {
@@ -42,7 +42,7 @@ TEST(Commands, shouldKnowEveryParameterOfTheManualBothWays) {
         EXPECT_EQ(static_cast<std::size_t>(*parameter), index) << letters;
         EXPECT_EQ(code(*parameter), letters);
     }
-    EXPECT_EQ(index, 31U);
+    EXPECT_EQ(index, 32U);
     EXPECT_EQ(parameter_from_code("RS"), Parameter::RS);
     EXPECT_EQ(parameter_from_code("VS"), Parameter::VS);
 }
@@ -82,7 +82,8 @@ std::set<std::string> words(std::string_view list) {
 
 TEST(CommandTable, shouldHaveEveryInquiryOfTheManual) {
     EXPECT_EQ(rows(Group::inquiry, [](const Command&) { return true; }),
-              words("AC CC DL DS EL ET EV EX GW HS IC JB JL MC MS OC PR RS SC SH SM VS"));
+              words("AC CC CP DL DS EL ET EV EX GW HS IC JB JL MC MS OC PR RS SC SH SL SM VS"))
+        << "CP as its description in section 4 says; SL from the field notes";
 }
 
 TEST(CommandTable, shouldSayWhoSendsEachParameter) {
@@ -94,7 +95,7 @@ TEST(CommandTable, shouldSayWhoSendsEachParameter) {
     // ET and PR are host to printer in the manual's headings, and come back as the answers to ?ET and ?PR.
     EXPECT_EQ(sent(Direction::both), words("CC CP DL ET JL NR PR"));
     EXPECT_EQ(sent(Direction::to_printer), words("CM CO FL MR RC SW"));
-    EXPECT_EQ(sent(Direction::to_host), words("AC DS EL EV EX FC GW HS IC MC MS OC RS SC SH SM VS"));
+    EXPECT_EQ(sent(Direction::to_host), words("AC DS EL EV EX FC GW HS IC MC MS OC RS SC SH SL SM VS"));
 }
 
 TEST(CommandTable, shouldNameWhatMustNotHappenWhileAJobPrints) {
@@ -115,7 +116,7 @@ TEST(CommandTable, shouldDescribeEachRowAndFollowTheSections) {
 }
 
 TEST(Commands, shouldNotKnowOtherCodes) {
-    for (const char* const letters : {"", "G", "GOO", "go", "XX", "SL", "0W", "W/", "W:", "G ", " G", "G\xE4"}) {
+    for (const char* const letters : {"", "G", "GOO", "go", "XX", "QQ", "0W", "W/", "W:", "G ", " G", "G\xE4"}) {
         EXPECT_EQ(action_from_code(letters), std::nullopt) << letters;
         EXPECT_EQ(parameter_from_code(letters), std::nullopt) << letters;
         EXPECT_EQ(file_command_from_code(letters), std::nullopt) << letters;
@@ -132,7 +133,7 @@ TEST(Commands, shouldDescribeEachDifferently) {
     for (int parameter = 0; parameter <= static_cast<int>(Parameter::VS); ++parameter) {
         descriptions.insert(description(static_cast<Parameter>(parameter)));
     }
-    EXPECT_EQ(descriptions.size(), 22U + 31U);
+    EXPECT_EQ(descriptions.size(), 22U + 32U);
     EXPECT_FALSE(descriptions.contains(""));
     EXPECT_EQ(description(Parameter::SM), "mailing status");
     EXPECT_EQ(description(Action::flush_fifo), "flush the mailing FIFO");

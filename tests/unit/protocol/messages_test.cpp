@@ -170,14 +170,14 @@ TEST(Messages, shouldReadInquiriesWithTheirArgument) {
 
 TEST(Messages, shouldCarryUnknownCommandsAlong) {
     const auto unknown = [](Group group, const char* payload) { return UnknownMessage{group, payload}; };
-    EXPECT_EQ(parsed_as<UnknownMessage>("^0=SL19\t12\t0\t0\r"), unknown(Group::parameter, "SL19\t12\t0\t0"));
+    EXPECT_EQ(parsed_as<UnknownMessage>("^0=QQ19\t12\t0\t0\r"), unknown(Group::parameter, "QQ19\t12\t0\t0"));
     EXPECT_EQ(parsed_as<UnknownMessage>("^0=X\r"), unknown(Group::parameter, "X"));
     EXPECT_EQ(parsed_as<UnknownMessage>("^0=\r"), unknown(Group::parameter, ""));
     EXPECT_EQ(parsed_as<UnknownMessage>("^0!XX\r"), unknown(Group::action, "XX"));
     EXPECT_EQ(parsed_as<UnknownMessage>("^0!G\r"), unknown(Group::action, "G"));
     EXPECT_EQ(parsed_as<UnknownMessage>("^0!GOAL\r"), unknown(Group::action, "GOAL"));
     EXPECT_EQ(parsed_as<UnknownMessage>("^0!\r"), unknown(Group::action, ""));
-    EXPECT_EQ(parsed_as<UnknownMessage>("^0?SL\r"), unknown(Group::inquiry, "SL"));
+    EXPECT_EQ(parsed_as<UnknownMessage>("^0?QQ\r"), unknown(Group::inquiry, "QQ"));
     EXPECT_EQ(parsed_as<UnknownMessage>("^0$XX1\r"), unknown(Group::file, "XX1"));
     EXPECT_EQ(parsed_as<UnknownMessage>("^0$\r"), unknown(Group::file, ""));
     EXPECT_EQ(parsed_as<UnknownMessage>("^0=JB1\r"), unknown(Group::parameter, "JB1")) << "answered with script lines";
