@@ -65,6 +65,7 @@ struct RawLayout {
     std::string profile{protocol::profiles.front().name};
     bool no_header = false;
     std::optional<int> orientation;
+    std::string graphics_folder;
 };
 /// The options that decide which records a file gives: the same for every command that reads files.
 void add_layout(CLI::App& command, intake::Layout& layout, RawLayout& raw);
