@@ -102,8 +102,8 @@ bool may_be_destructive(const Task& task) {
 CLI::App& subcommand(CLI::App& above, const std::vector<std::string>& words) {
     CLI::App* at = &above;
     for (const std::string& word : words) {
-        CLI::App* next = at->get_subcommand_no_throw(word);
-        at = next != nullptr ? next : at->add_subcommand(word);
+        const auto there = at->get_subcommands([&word](const CLI::App* known) { return known->get_name() == word; });
+        at = there.empty() ? at->add_subcommand(word) : there.front();
         at->fallthrough();
     }
     return *at;
@@ -216,11 +216,11 @@ void define_tasks(CLI::App& printer, Commands& commands,
     // A command that stands below another comes first: that other one is parsed too.
     std::ranges::stable_sort(all, [](const Command& a, const Command& b) {
         const auto depth = [](const CLI::App* command) {
-            int depth = 0;
+            int above = 0;
             for (; command != nullptr; command = command->get_parent()) {
-                ++depth;
+                ++above;
             }
-            return depth;
+            return above;
         };
         return depth(a.app) > depth(b.app);
     });
