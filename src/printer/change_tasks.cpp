@@ -8,6 +8,8 @@
 #include "printer/tasks.hpp"
 
 #include <array>
+#include <chrono>
+#include <thread>
 
 namespace linefeed::printer {
 
@@ -196,8 +198,24 @@ Result<Json> set_text(PrinterClient& printer, const Order& order) {
     if (!printer.send(wanted)) {
         return no_answer(printer, Parameter::ET);
     }
-    const auto now = asked<protocol::ExternText>(printer, Parameter::ET);
-    return now ? json_result(fields_of(protocol::Message{*now})) : now.error();
+    constexpr auto longest = std::chrono::milliseconds{500}; // it takes 20 to 150 ms
+    constexpr auto look_again = std::chrono::milliseconds{50};
+    const auto deadline = std::chrono::steady_clock::now() + longest;
+    while (true) {
+        const auto now = asked<protocol::ExternText>(printer, Parameter::ET);
+        if (!now) {
+            return now.error();
+        }
+        const bool taken = *now == wanted;
+        if (taken || std::chrono::steady_clock::now() >= deadline) {
+            Json json = fields_of(protocol::Message{*now});
+            if (!taken) {
+                json["note"] = "the printer still shows another text";
+            }
+            return json_result(std::move(json));
+        }
+        std::this_thread::sleep_for(look_again);
+    }
 }
 
 Result<Json> fill_blocks(PrinterClient& printer, const Order& order) {
