@@ -140,6 +140,7 @@ struct FrameView {
     std::string bytes;        ///< raw; at most 128 of them; of several records, the first one's; none: no frame
     std::uint32_t size = 0;   ///< of the whole frame with its CR, or of all the records
     RecordRange records{};    ///< not empty: the numbers of the mail records, all of which this entry stands for
+    std::uint64_t id = 0;     ///< its place in the conversation, both ways counted together
 };
 
 struct EventView {

@@ -44,6 +44,10 @@ Failure no_answer(const PrinterClient& printer, Parameter what) {
                                                          : ": the connection was lost while it was asked " + asked)};
 }
 
+Failure not_taken(const std::string& seen) {
+    return {FailureKind::stopped, "the printer has not taken it: " + seen};
+}
+
 Result<std::vector<protocol::ErrorEntry>> ask_error_list(PrinterClient& printer) {
     return ask_list<protocol::ErrorListBlock>(printer);
 }

@@ -14,6 +14,9 @@ namespace linefeed::printer {
 /// answered, and old firmware does not know all.
 [[nodiscard]] Failure no_answer(const PrinterClient& printer, protocol::Parameter what);
 
+/// FailureKind::stopped: what was sent has not changed what it should. `seen` = what the printer says instead.
+[[nodiscard]] Failure not_taken(const std::string& seen);
+
 /// The answer to one inquiry.
 template <typename Answer>
 [[nodiscard]] Result<Answer> asked(PrinterClient& printer, protocol::Parameter what, std::string argument = {}) {

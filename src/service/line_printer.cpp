@@ -59,14 +59,16 @@ Result<void> Line::acknowledge(std::uint32_t error) {
     return {};
 }
 
-Result<std::string> Line::carry_out(const printer::Task& task, std::string_view arguments) {
+Result<std::string> Line::carry_out(const printer::Task& task, std::string_view arguments,
+                                    const std::function<Result<void>()>& check) {
     auto read = printer::Arguments::parse(task.arguments, arguments);
     if (!read) {
         return read.error();
     }
     const auto danger = printer::danger_of(task, *read);
-    if (!danger) {
-        return danger.error();
+    const auto empties = printer::empties_fifo(task, *read);
+    if (!danger || !empties) {
+        return danger ? empties.error() : danger.error();
     }
     const auto client = client_settings();
     if (!client) {
@@ -78,9 +80,17 @@ Result<std::string> Line::carry_out(const printer::Task& task, std::string_view 
             return reserved.error();
         }
         reservation = {this, [](Line* line) {
-                           const std::lock_guard lock{line->mutex_};
-                           --line->reserved_;
+                           {
+                               const std::lock_guard lock{line->mutex_};
+                               --line->reserved_;
+                           }
+                           line->changed_.notify_all();
                        }};
+    }
+    if (*empties) {
+        if (auto checked = check(); !checked) {
+            return checked.error();
+        }
     }
     const auto connected = printer::PrinterClient::connect(*client);
     if (!connected) {

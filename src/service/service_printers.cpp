@@ -48,7 +48,7 @@ Result<std::string> Service::inspect(std::string_view printer, std::string_view 
         return line.error();
     }
     const auto task = printer::known_task(what, printer::Task::Kind::look);
-    return task ? (*line)->carry_out(**task, arguments) : task.error();
+    return task ? (*line)->carry_out(**task, arguments, [] { return Result<void>{}; }) : task.error();
 }
 
 Result<std::string> Service::command(const daemon::Caller& caller, std::string_view printer, std::string_view what,
@@ -64,17 +64,7 @@ Result<std::string> Service::command(const daemon::Caller& caller, std::string_v
         if (!task) {
             return task.error();
         }
-        const auto read = printer::Arguments::parse((*task)->arguments, arguments);
-        const auto empties = read ? printer::empties_fifo(**task, *read) : read.error();
-        if (!empties) {
-            return empties.error();
-        }
-        if (*empties) {
-            if (auto known = check_fifo_known((*line)->printer()); !known) {
-                return known.error();
-            }
-        }
-        return (*line)->carry_out(**task, arguments);
+        return (*line)->carry_out(**task, arguments, [&] { return check_fifo_known((*line)->printer()); });
     });
 }
 
