@@ -37,6 +37,8 @@ void define_job_changes(CLI::App& app, Commands& commands);
 void define_starts(CLI::App& app, Commands& commands);
 /// What `linefeed printer P` has: every task, monitor, record, replay.
 void define_tasks(CLI::App& printer, Commands& commands, const std::shared_ptr<client::PrinterOptions>& options);
+/// files get and put, backup, restore, script, preview
+void define_files(CLI::App& printer, Commands& commands, const std::shared_ptr<client::PrinterOptions>& options);
 /// printers, printer, stop
 void define_printers(CLI::App& app, Commands& commands);
 /// status, watch, events, folders, audit, reload
