@@ -8,8 +8,8 @@ namespace linefeed::api {
 
 namespace {
 
-constexpr Route get(std::string_view path, Role role, Lane lane, decltype(Route::handle) handle,
-                    RouteQuery query = {}, std::string_view produces = media::json) {
+constexpr Route get(std::string_view path, Role role, Lane lane, decltype(Route::handle) handle, RouteQuery query = {},
+                    std::string_view produces = media::json) {
     return {Method::get, path, role, lane, Key::none, Body::none, produces, query, handle};
 }
 

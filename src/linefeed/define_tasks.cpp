@@ -48,7 +48,8 @@ std::string option_name(const Argument& argument) {
     if (!argument.positional) {
         return "--" + name;
     }
-    std::ranges::transform(name, name.begin(), [](char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; });
+    std::ranges::transform(name, name.begin(),
+                           [](char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; });
     return name;
 }
 
@@ -88,7 +89,9 @@ client::TaskOptions options_for(const Form& form, const Task& task, const client
 /// Whether anything was given that only the change takes.
 bool sets_something(const Form& form) {
     return form.set != nullptr && std::ranges::any_of(form.given, [&form](const auto& given) {
-               const auto of_look = [&given](const Argument& argument) { return argument.name == given->argument->name; };
+               const auto of_look = [&given](const Argument& argument) {
+                   return argument.name == given->argument->name;
+               };
                return given->option->count() > 0 && std::ranges::none_of(form.look->arguments, of_look);
            });
 }
@@ -129,7 +132,8 @@ const Task* set_beside(const Task& look) {
     return set != nullptr && set->options_of_look ? set : nullptr;
 }
 
-void add_monitor(CLI::App& printer, Commands& commands, const std::shared_ptr<client::PrinterOptions>& printer_options) {
+void add_monitor(CLI::App& printer, Commands& commands,
+                 const std::shared_ptr<client::PrinterOptions>& printer_options) {
     const auto options = std::make_shared<client::MonitorOptions>();
     const auto interval_s = std::make_shared<double>(1);
     const auto duration_s = std::make_shared<double>(0);
@@ -180,7 +184,8 @@ void add_task(CLI::App& printer, Commands& commands, const std::shared_ptr<clien
     form->look = &task;
     form->set = set_beside(task);
     CLI::App& command = subcommand(printer, words_of(task.name));
-    command.description(std::string{task.help} + (form->set == nullptr ? "" : "; with options: " + std::string{form->set->help}));
+    command.description(std::string{task.help} +
+                        (form->set == nullptr ? "" : "; with options: " + std::string{form->set->help}));
     for (const Argument& argument : task.arguments) {
         add_argument(command, *form, argument, false);
     }
@@ -201,8 +206,7 @@ void add_task(CLI::App& printer, Commands& commands, const std::shared_ptr<clien
 
 } // namespace
 
-void define_tasks(CLI::App& printer, Commands& commands,
-                  const std::shared_ptr<client::PrinterOptions>& options) {
+void define_tasks(CLI::App& printer, Commands& commands, const std::shared_ptr<client::PrinterOptions>& options) {
     Commands all;
     for (const Task& task : printer::tasks()) {
         const bool defined_by_hand = task.name == "acknowledge" || task.name == "suspend" || task.name == "release";

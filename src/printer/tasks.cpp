@@ -37,7 +37,8 @@ Result<void> check_not_printing(const Task& task, PrinterClient& printer) {
                                                            "whether it prints: nothing is done"};
     }
     if (status->machine == protocol::MachineState::printing) {
-        return Failure{FailureKind::stopped, printer.settings().address + ": the printer is ready to print or prints: " +
+        return Failure{FailureKind::stopped, printer.settings().address +
+                                                 ": the printer is ready to print or prints: " +
                                                  "stop it first, then say " + std::string{task.name} + " again"};
     }
     return {};

@@ -86,8 +86,9 @@ public:
     /// See printer::acknowledge().
     [[nodiscard]] Result<void> acknowledge(std::uint32_t error);
     /// Carries out one of printer::tasks(); `arguments` and the answer are JSON. What disturbs the feeding or loses
-    /// what is in the printer is refused while a job is on the line, and a job that is started meanwhile waits for the end of it:
-    /// FailureKind::stopped. `check` says whether what empties the FIFO may be done, asked once no job can start.
+    /// what is in the printer is refused while a job is on the line, and a job that is started meanwhile waits for the
+    /// end of it: FailureKind::stopped. `check` says whether what empties the FIFO may be done, asked once no job can
+    /// start.
     [[nodiscard]] Result<std::string> carry_out(const printer::Task& task, std::string_view arguments,
                                                 const std::function<Result<void>()>& check);
     /// Holds the panel for so long from now, or releases it.

@@ -84,7 +84,8 @@ Result<void> Service::check_fifo_known(const std::string& printer) {
             }
             if (facts->printer() == printer || (*open && (*open)->printer == address)) {
                 return Failure{FailureKind::stopped,
-                               "nobody knows yet which records of " + name_of(id) + " the printer has printed, and what "
+                               "nobody knows yet which records of " + name_of(id) +
+                                   " the printer has printed, and what "
                                    "it knows would be lost: start or resume that job first, which asks it"};
             }
         }
