@@ -36,9 +36,10 @@ void show_frame(const SpokenFrame& frame, bool json) {
         return;
     }
     const std::string command = printer::command_of(frame.message);
-    const std::string words = frame.whole ? printer::in_words(frame.message) : "(the beginning) " + printer::escaped_bytes(frame.raw);
+    const std::string words =
+        frame.whole ? printer::in_words(frame.message) : "(the beginning) " + printer::escaped_bytes(frame.raw);
     show(protocol::printable(cli::format_local_clock(frame.time_ns) + (frame.sent ? " -> " : " <- ") +
-                        (command.empty() ? printer::escaped_bytes(frame.raw) : command) + "  " + words) +
+                             (command.empty() ? printer::escaped_bytes(frame.raw) : command) + "  " + words) +
          '\n');
 }
 
@@ -180,8 +181,8 @@ Result<std::vector<SpokenFrame>> read_recording(const ReplayOptions& options, pr
     for (std::size_t number = 1; std::getline(in, line); ++number) {
         const auto utterance = printer::read_line(line);
         if (!utterance) {
-            return Failure{FailureKind::input,
-                           options.file.string() + ", line " + std::to_string(number) + ": " + utterance.error().message};
+            return Failure{FailureKind::input, options.file.string() + ", line " + std::to_string(number) + ": " +
+                                                   utterance.error().message};
         }
         finder.add(*utterance, [&frames](const SpokenFrame& frame) { frames.push_back(frame); });
     }
@@ -226,9 +227,10 @@ Result<ExitCode> replay_against(const ReplayOptions& options, const std::vector<
     }
     Json differences = Json::array();
     for (const printer::Difference& difference : rerun->differences) {
-        differences.push_back({{"asked", printer::escaped_bytes(difference.asked)},
-                               {"expected", printer::escaped_bytes(difference.expected)},
-                               {"got", difference.got.empty() ? Json{} : Json(printer::escaped_bytes(difference.got))}});
+        differences.push_back(
+            {{"asked", printer::escaped_bytes(difference.asked)},
+             {"expected", printer::escaped_bytes(difference.expected)},
+             {"got", difference.got.empty() ? Json{} : Json(printer::escaped_bytes(difference.got))}});
         if (!options.printer.common.json) {
             show(protocol::printable("asked    " + text(differences.back(), "asked")) + "\n  then " +
                  protocol::printable(text(differences.back(), "expected")) + "\n  now  " +

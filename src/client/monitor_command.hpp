@@ -21,9 +21,9 @@ struct MonitorOptions {
 struct ReplayOptions {
     PrinterOptions printer;
     std::filesystem::path file;
-    bool fast = false;      ///< without the pauses
-    std::string against;    ///< address to which the host's side is sent again; empty = show it
-    bool yes = false;       ///< nobody is asked
+    bool fast = false;   ///< without the pauses
+    std::string against; ///< address to which the host's side is sent again; empty = show it
+    bool yes = false;    ///< nobody is asked
 };
 
 [[nodiscard]] ExitCode run_monitor(const MonitorOptions& options);

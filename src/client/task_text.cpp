@@ -14,7 +14,8 @@ std::string spaced(std::string name) {
 }
 
 std::string upper_case(std::string name) {
-    std::ranges::transform(name, name.begin(), [](char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; });
+    std::ranges::transform(name, name.begin(),
+                           [](char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; });
     return name;
 }
 
@@ -71,9 +72,8 @@ std::string table_text(const Json& rows, const Screen& screen) {
     const std::vector<std::string> names = columns_of(rows);
     std::vector<Column> columns;
     for (const std::string& name : names) {
-        const bool numbers = std::ranges::all_of(rows, [&name](const Json& row) {
-            return member(row, name).is_number() || member(row, name).is_null();
-        });
+        const bool numbers = std::ranges::all_of(
+            rows, [&name](const Json& row) { return member(row, name).is_number() || member(row, name).is_null(); });
         const bool long_words = name == "meaning" || name == "advice" || name == "words";
         columns.push_back({upper_case(spaced(name)), numbers, long_words});
     }

@@ -49,8 +49,7 @@ void add_printer(CLI::App& app, Commands& commands) {
     frames.add_flag("--error", *error, "Those before the last error, if there was one");
     CLI::App& acknowledge = *printer.add_subcommand("acknowledge", "Acknowledge the error that the printer shows");
     acknowledge.alias("ack");
-    acknowledge
-        .add_option("ERROR", *code, "Its number; another one is left alone. Default: the one that is shown now")
+    acknowledge.add_option("ERROR", *code, "Its number; another one is left alone. Default: the one that is shown now")
         ->check(CLI::Range(1, 33'554'431));
     CLI::App& suspend = *printer.add_subcommand("suspend", "Suspend the panel, so that nobody presses a key on it");
     suspend.add_option("--hold", *hold_s, "Seconds until it is given back by itself")
@@ -61,9 +60,8 @@ void add_printer(CLI::App& app, Commands& commands) {
         action->fallthrough();
     }
 
-    commands.push_back({&preflight, [options] {
-                            return of_service_only(*options, [&] { return client::run_preflight(*options); });
-                        }});
+    commands.push_back(
+        {&preflight, [options] { return of_service_only(*options, [&] { return client::run_preflight(*options); }); }});
     commands.push_back({&frames, [options, error] {
                             return of_service_only(*options, [&] { return client::run_frames({*options, *error}); });
                         }});
