@@ -8,8 +8,8 @@ namespace linefeed::api {
 
 namespace {
 
-constexpr Route get(std::string_view path, Role role, Lane lane, decltype(Route::handle) handle,
-                    RouteQuery query = {}, std::string_view produces = media::json) {
+constexpr Route get(std::string_view path, Role role, Lane lane, decltype(Route::handle) handle, RouteQuery query = {},
+                    std::string_view produces = media::json) {
     return {Method::get, path, role, lane, Key::none, Body::none, produces, query, handle};
 }
 
@@ -34,7 +34,10 @@ constexpr std::array table{
     get("/api/v1/printers/{printer}/frames", Role::viewer, Lane::query, handlers::frames, {"error"}),
     post("/api/v1/printers/{printer}/preflight", Lane::slow, Key::accepted, Body::none, handlers::preflight),
     get("/api/v1/printers/{printer}/inspect/{what}", Role::viewer, Lane::slow, handlers::inspect,
-        {"type", "code", "argument"}),
+        {"type", "code", "argument", "path"}),
+    get("/api/v1/printers/{printer}/files", Role::viewer, Lane::slow, handlers::read_file, {"path"}, media::bytes),
+    post("/api/v1/printers/{printer}/files", Lane::slow, Key::accepted, Body::file, handlers::write_file,
+         {"path", "replace"}),
     post("/api/v1/printers/{printer}/command", Lane::slow, Key::accepted, Body::json, handlers::command),
     post("/api/v1/printers/{printer}/start", Lane::change, Key::required, Body::optional_json, handlers::start_printer),
     post("/api/v1/printers/{printer}/stop", Lane::stop, Key::accepted, Body::none, handlers::stop_printer),

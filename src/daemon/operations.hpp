@@ -140,6 +140,7 @@ struct FrameView {
     std::string bytes;        ///< raw; at most 128 of them; of several records, the first one's; none: no frame
     std::uint32_t size = 0;   ///< of the whole frame with its CR, or of all the records
     RecordRange records{};    ///< not empty: the numbers of the mail records, all of which this entry stands for
+    std::uint64_t id = 0;     ///< its place in the conversation, both ways counted together
 };
 
 struct EventView {
@@ -259,6 +260,13 @@ struct ServiceMetrics {
     HistogramView ledger_commit;
 };
 
+/// A file that goes to a printer.
+struct PrinterFile {
+    std::string path{};              ///< in the printer
+    std::filesystem::path content{}; ///< a file of ours
+    bool replace = false;            ///< one of that name
+};
+
 /// Any thread but the feed and the store thread; calls may wait for the store. FailureKind::usage = the request is
 /// wrong (unknown name, wrong phase), with what to do instead; ::stopped = it conflicts with what goes on.
 class Operations {
@@ -280,6 +288,9 @@ public:
     /// JSON object, empty = none; so is the answer. Asks the printer, over a connection of its own.
     [[nodiscard]] virtual Result<std::string> inspect(std::string_view printer, std::string_view what,
                                                       std::string_view arguments) = 0;
+
+    /// The content of a file of the printer; empty also if there is none.
+    [[nodiscard]] virtual Result<std::string> read_file(std::string_view printer, std::string_view path) = 0;
 
     [[nodiscard]] virtual Result<std::vector<JobView>> jobs(const JobFilter& filter) = 0;
     [[nodiscard]] virtual Result<std::optional<JobView>> job(spool::JobId id) = 0;
@@ -338,6 +349,9 @@ public:
     /// printer; and nothing that empties the FIFO while the fate of records in it is open.
     [[nodiscard]] virtual Result<std::string> command(const Caller& caller, std::string_view printer,
                                                       std::string_view what, std::string_view arguments) = 0;
+    /// Writes a file of the printer. FailureKind::stopped: it would be replaced, and a job is on the line.
+    [[nodiscard]] virtual Result<void> write_file(const Caller& caller, std::string_view printer,
+                                                  const PrinterFile& file) = 0;
     /// As SIGHUP: what has changed, one line each.
     [[nodiscard]] virtual Result<std::vector<std::string>> reload(const Caller& caller) = 0;
 

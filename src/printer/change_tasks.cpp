@@ -8,6 +8,8 @@
 #include "printer/tasks.hpp"
 
 #include <array>
+#include <chrono>
+#include <thread>
 
 namespace linefeed::printer {
 
@@ -30,8 +32,8 @@ constexpr CommandId sets(std::string_view code) {
 Result<Json> machine_behind(PrinterClient& printer) {
     const auto status = asked<MachineStatus>(printer, Parameter::RS);
     if (!status) {
-        return Failure{status.error().kind, "it is sent, but nobody knows whether it has arrived: " +
-                                                status.error().message};
+        return Failure{status.error().kind,
+                       "it is sent, but nobody knows whether it has arrived: " + status.error().message};
     }
     return json_result(fields_of(protocol::Message{*status}));
 }
@@ -106,8 +108,7 @@ Result<Json> acknowledge_shown(PrinterClient& printer, const Order& order) {
     if (status->error.none() && !named) {
         return Failure{FailureKind::stopped, "the printer shows no error"};
     }
-    const auto left =
-        acknowledge(printer, named ? static_cast<std::uint32_t>(*named) : status->error.code());
+    const auto left = acknowledge(printer, named ? static_cast<std::uint32_t>(*named) : status->error.code());
     if (!left) {
         return left.error();
     }
@@ -143,10 +144,10 @@ Result<Json> limit_counter(PrinterClient& printer, const Order& order) {
     if (limit != "start" && limit != "end") {
         return Failure{FailureKind::usage, "limit must be start or end"};
     }
-    return sent(printer, protocol::CounterParameter{
-                             static_cast<std::uint32_t>(*order.arguments.number("counter")),
-                             limit == "start" ? protocol::CounterLimit::start : protocol::CounterLimit::end,
-                             *order.arguments.number("value")});
+    return sent(printer, protocol::CounterParameter{static_cast<std::uint32_t>(*order.arguments.number("counter")),
+                                                    limit == "start" ? protocol::CounterLimit::start
+                                                                     : protocol::CounterLimit::end,
+                                                    *order.arguments.number("value")});
 }
 
 Result<Json> reset_counter(PrinterClient& printer, const Order& order) {
@@ -164,8 +165,8 @@ Result<Json> set_output(PrinterClient& printer, const Order& order) {
     if (state != "on" && state != "off") {
         return Failure{FailureKind::usage, "state must be on or off"};
     }
-    return sent(printer, protocol::OutputChange{static_cast<std::uint32_t>(*order.arguments.number("output")),
-                                                state == "on"});
+    return sent(printer,
+                protocol::OutputChange{static_cast<std::uint32_t>(*order.arguments.number("output")), state == "on"});
 }
 
 Result<Json> set_clock(PrinterClient& printer, const Order& order) {
@@ -196,8 +197,24 @@ Result<Json> set_text(PrinterClient& printer, const Order& order) {
     if (!printer.send(wanted)) {
         return no_answer(printer, Parameter::ET);
     }
-    const auto now = asked<protocol::ExternText>(printer, Parameter::ET);
-    return now ? json_result(fields_of(protocol::Message{*now})) : now.error();
+    constexpr auto longest = std::chrono::milliseconds{500}; // it takes 20 to 150 ms
+    constexpr auto look_again = std::chrono::milliseconds{50};
+    const auto deadline = std::chrono::steady_clock::now() + longest;
+    while (true) {
+        const auto now = asked<protocol::ExternText>(printer, Parameter::ET);
+        if (!now) {
+            return now.error();
+        }
+        const bool taken = *now == wanted;
+        if (taken || std::chrono::steady_clock::now() >= deadline) {
+            Json json = fields_of(protocol::Message{*now});
+            if (!taken) {
+                json["note"] = "the printer still shows another text";
+            }
+            return json_result(std::move(json));
+        }
+        std::this_thread::sleep_for(look_again);
+    }
 }
 
 Result<Json> fill_blocks(PrinterClient& printer, const Order& order) {
@@ -242,8 +259,11 @@ constexpr std::array acknowledge_arguments{
              .positional = true,
              .smallest = 1,
              .largest = (1U << 25U) - 1}};
-constexpr std::array stop_at_arguments{Argument{
-    .name = "number", .help = "The last record to print; 0: none", .type = number, .required = true, .positional = true}};
+constexpr std::array stop_at_arguments{Argument{.name = "number",
+                                                .help = "The last record to print; 0: none",
+                                                .type = number,
+                                                .required = true,
+                                                .positional = true}};
 constexpr std::array counters_set_arguments{
     Argument{.name = "product", .help = "Set the product counter", .type = number},
     Argument{.name = "stop_after", .help = "Stop after so many products; 0: never", .type = number}};
@@ -319,8 +339,8 @@ constexpr std::array list{
     change("flush", "Empty the mailing FIFO", flush_uses, flush),
     change("mailing stop-at", "Let the printer stop behind a record", stop_at_uses, stop_at, stop_at_arguments),
     change("fonts reload", "Load the fonts again; interrupts printing", fonts_uses, act<Action::reload_fonts>),
-    option_of_look(change("counters set", "Set the product counter", counters_set_uses, set_counters,
-                          counters_set_arguments)),
+    option_of_look(
+        change("counters set", "Set the product counter", counters_set_uses, set_counters, counters_set_arguments)),
     change("counters reset", "Set the counters of the job back", counters_reset_uses, act<Action::reset_counters>),
     change("counter limit", "Set the start or end of one of the job's counters", counter_limit_uses, limit_counter,
            counter_limit_arguments),
@@ -331,8 +351,8 @@ constexpr std::array list{
     change("outputs give-back", "Give the outputs back to the printer", outputs_uses, control_outputs<false>),
     change("outputs set", "Switch an output that was taken", outputs_uses, set_output, output_arguments),
     option_of_look(change("clock set", "Set the printer's clock", clock_uses, set_clock, clock_arguments)),
-    option_of_look(change("parameter set", "Set a print parameter", parameter_uses, set_parameter,
-                          parameter_set_arguments)),
+    option_of_look(
+        change("parameter set", "Set a print parameter", parameter_uses, set_parameter, parameter_set_arguments)),
     option_of_look(change("text set", "Set the extern text", text_uses, set_text, text_arguments)),
     change("display on", "Show the WYSIWYG picture on the panel", display_on_uses, act<Action::display_on>),
     change("display off", "Do not show the WYSIWYG picture", display_off_uses, act<Action::display_off>),

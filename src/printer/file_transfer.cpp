@@ -167,6 +167,25 @@ Result<void> upload(PrinterClient& printer, const std::string& path, std::string
     return Upload{printer, path, bytes, options}.run();
 }
 
+Result<void> put_file(PrinterClient& printer, const std::string& path, std::string_view bytes, bool replace,
+                      const TransferOptions& options) {
+    const auto there = list_files(printer, path);
+    if (!there) {
+        return there.error();
+    }
+    if (!there->empty()) {
+        if (!replace || there->front().is_directory) {
+            return Failure{FailureKind::usage, path_text(path) + ": the printer has something of that name already"};
+        }
+        const auto status = printer.ask<protocol::MachineStatus>(protocol::Parameter::RS); // none in standby
+        if (status && status->machine == protocol::MachineState::printing) {
+            return Failure{FailureKind::stopped,
+                           path_text(path) + ": not replaced while the printer prints: stop it first"};
+        }
+    }
+    return upload(printer, path, bytes, options);
+}
+
 Result<void> remove_file(PrinterClient& printer, const std::string& path) {
     const auto before = list_files(printer, path);
     if (!before) {

@@ -61,6 +61,11 @@ enum class FileFound { yes, empty_or_missing };
 [[nodiscard]] Result<void> upload(PrinterClient& printer, const std::string& path, std::string_view bytes,
                                   const TransferOptions& options = {});
 
+/// As upload(), of which nobody says afterwards that he did not mean it: FailureKind::usage where a file of that name
+/// is there and is not to be replaced; ::stopped where it is, and the machine prints.
+[[nodiscard]] Result<void> put_file(PrinterClient& printer, const std::string& path, std::string_view bytes,
+                                    bool replace, const TransferOptions& options = {});
+
 /// Deletes a file and looks whether it is gone, as the printer does not answer. FailureKind::input: there is none;
 /// ::stopped: it is still there.
 [[nodiscard]] Result<void> remove_file(PrinterClient& printer, const std::string& path);

@@ -53,8 +53,8 @@ Result<ClockTime> read_clock(std::string_view text) {
     const auto time = read_digits(text);
     const auto moment = time ? to_sys_seconds(*time) : std::nullopt;
     if (!moment || time->year < 1601) {
-        return Failure{FailureKind::usage, "\"" + std::string{text} +
-                                               "\" is no moment: write it as \"2026-11-26 10:00:00\", or say now"};
+        return Failure{FailureKind::usage,
+                       "\"" + std::string{text} + "\" is no moment: write it as \"2026-11-26 10:00:00\", or say now"};
     }
     return ClockTime{*time, protocol::weekday_of(*moment)};
 }

@@ -176,7 +176,8 @@ Result<Json> service(PrinterClient& printer, const Order& /*order*/) {
     Json json = fields_of(*history);
     if (history->last_service_date) {
         json["last_service_date_code"] = *history->last_service_date;
-        json["last_service_date"] = to_json(protocol::unpack_date(static_cast<std::uint32_t>(*history->last_service_date)));
+        json["last_service_date"] =
+            to_json(protocol::unpack_date(static_cast<std::uint32_t>(*history->last_service_date)));
     }
     const auto intervals = printer.ask<protocol::ServiceIntervals>(Parameter::SC);
     json["interval_hours"] = intervals && intervals->hours ? Json(*intervals->hours) : Json{};
@@ -219,7 +220,11 @@ constexpr std::array list{
     Task{"counters", look_kind, "Products, prints, and the counters of the job", counters_uses, {}, counters},
     Task{"errors", look_kind, "The printer's list of errors, in words", errors_uses, {}, errors},
     Task{"events", look_kind, "The printer's list of hydraulic events", events_uses, {}, events},
-    Task{"inputs", look_kind, "Speed, and what comes in from outside, with the function of each input", inputs_uses, {},
+    Task{"inputs",
+         look_kind,
+         "Speed, and what comes in from outside, with the function of each input",
+         inputs_uses,
+         {},
          inputs},
     Task{"outputs", look_kind, "What each output signals", outputs_uses, {}, outputs},
     Task{"clock", look_kind, "Date and time of the printer", clock_uses, {}, clock_look},

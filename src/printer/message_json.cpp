@@ -28,9 +28,7 @@ struct SpecialFields {
         return {{"counter", message.counter}, {"start", message.start ? Json{*message.start} : Json{}}};
     }
     Json operator()(const protocol::ExternText& message) const { return {{"text", printable(message.text)}}; }
-    Json operator()(const protocol::WysiwygLine& message) const {
-        return {{"bytes", message.bytes.size()}};
-    }
+    Json operator()(const protocol::WysiwygLine& message) const { return {{"bytes", message.bytes.size()}}; }
     Json operator()(const protocol::MailRecord& message) const {
         Json fields = Json::array();
         for (const std::string& field : message.fields) {
@@ -108,28 +106,40 @@ std::string what_of(const protocol::Message& message) {
     using protocol::description;
     return std::visit(
         Overloaded{
-            [](const protocol::ActionMessage& action) { return std::string{description(action.action)}; },
-            [](const protocol::InquiryMessage& inquiry) { return std::string{description(inquiry.parameter)} + '?'; },
+            [](const protocol::ActionMessage& action) {
+        return std::string{description(action.action)}; },
+            [](const protocol::InquiryMessage& inquiry) {
+        return std::string{description(inquiry.parameter)} + '?'; },
             [](const protocol::ScriptLine& line) {
-                return std::string{line.is_begin() ? "a script begins" : line.is_end() ? "a script ends" : "script"};
+        return std::string{line.is_begin() ? "a script begins" : line.is_end() ? "a script ends" : "script"};
             },
-            [](const protocol::UnknownMessage&) { return std::string{"unknown command"}; },
-            [](const protocol::MalformedMessage&) { return std::string{"not readable"}; },
-            [](const protocol::MailRecord&) { return std::string{description(protocol::Parameter::MR)}; },
-            [](const protocol::FileBlock&) { return std::string{description(protocol::FileCommand::FT)}; },
-            [](const protocol::DirectoryBlock&) { return std::string{description(protocol::FileCommand::DI)}; },
-            [](const protocol::JobCounters&) { return std::string{description(protocol::Parameter::AC)}; },
-            [](const protocol::CounterReset&) { return std::string{description(protocol::Parameter::RC)}; },
-            [](const protocol::ExternText&) { return std::string{description(protocol::Parameter::ET)}; },
-            [](const protocol::WysiwygLine&) { return std::string{description(protocol::Parameter::GW)}; },
-            []<typename Block>(const Block& /*message*/) requires requires { Block::list; } {
-                return std::string{description(Block::list)};
-            },
-            []<protocol::DescribedParameter T>(const T& /*message*/) { return std::string{description(T::parameter)}; },
-            []<protocol::DescribedFile T>(const T& /*message*/) { return std::string{description(T::command)}; },
-        },
-        message);
+            [](const protocol::UnknownMessage&) {
+        return std::string{"unknown command"}; },
+            [](const protocol::MalformedMessage&) {
+        return std::string{"not readable"}; },
+            [](const protocol::MailRecord&) {
+        return std::string{description(protocol::Parameter::MR)}; },
+            [](const protocol::FileBlock&) {
+        return std::string{description(protocol::FileCommand::FT)}; },
+            [](const protocol::DirectoryBlock&) {
+        return std::string{description(protocol::FileCommand::DI)}; },
+            [](const protocol::JobCounters&) {
+        return std::string{description(protocol::Parameter::AC)}; },
+            [](const protocol::CounterReset&) {
+        return std::string{description(protocol::Parameter::RC)}; },
+            [](const protocol::ExternText&) {
+        return std::string{description(protocol::Parameter::ET)}; },
+            [](const protocol::WysiwygLine&) {
+        return std::string{description(protocol::Parameter::GW)}; },
+            []<typename Block>(const Block& /*message*/) requires requires { Block::list;
 }
+{ return std::string{description(Block::list)}; }
+, []<protocol::DescribedParameter T>(const T& /*message*/) { return std::string{description(T::parameter)}; },
+    []<protocol::DescribedFile T>(const T& /*message*/) { return std::string{description(T::command)}; },
+} // namespace
+,
+        message);
+} // namespace linefeed::printer
 
 } // namespace
 
@@ -164,14 +174,16 @@ Json event_json(const protocol::EventEntry& entry) {
 Json fields_of(const protocol::Message& message) {
     return std::visit(
         Overloaded{[](const protocol::MachineStatus& status) {
-                       Json fields = fields_of<protocol::MachineStatus>(status);
-                       fields["error"] = to_json(status.error);
-                       return fields;
+        Json fields = fields_of<protocol::MachineStatus>(status);
+        fields["error"] = to_json(status.error);
+        return fields;
                    },
-                   []<protocol::DescribedMessage T>(const T& described) { return fields_of<T>(described); },
+                   []<protocol::DescribedMessage T>(const T& described) {
+        return fields_of<T>(described); },
                    []<typename T>(const T& special) requires(!protocol::DescribedMessage<T>) {
                        return SpecialFields{}(special);
-                   }},
+}
+},
         message);
 }
 
@@ -216,7 +228,10 @@ std::string escaped_bytes(std::string_view bytes) {
 
 std::optional<std::string> unescaped_bytes(std::string_view text) {
     const auto digit = [](char c) -> int {
-        return c >= '0' && c <= '9' ? c - '0' : c >= 'A' && c <= 'F' ? c - 'A' + 10 : c >= 'a' && c <= 'f' ? c - 'a' + 10 : -1;
+        return c >= '0' && c <= '9'   ? c - '0'
+               : c >= 'A' && c <= 'F' ? c - 'A' + 10
+               : c >= 'a' && c <= 'f' ? c - 'a' + 10
+                                      : -1;
     };
     std::string out;
     for (std::size_t i = 0; i < text.size(); ++i) {

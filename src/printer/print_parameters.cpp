@@ -17,11 +17,10 @@ struct Named {
     PrintParameterType type;
     std::string_view name;
 };
-constexpr std::array names{Named{PrintParameterType::print_go_delay, "delay"},
-                           Named{PrintParameterType::print_go_distance, "distance"},
-                           Named{PrintParameterType::stroke_distance, "stroke-distance"},
-                           Named{PrintParameterType::printing_height, "height"},
-                           Named{PrintParameterType::encoder_speed, "encoder-speed"}};
+constexpr std::array names{
+    Named{PrintParameterType::print_go_delay, "delay"}, Named{PrintParameterType::print_go_distance, "distance"},
+    Named{PrintParameterType::stroke_distance, "stroke-distance"}, Named{PrintParameterType::printing_height, "height"},
+    Named{PrintParameterType::encoder_speed, "encoder-speed"}};
 
 std::string number_of(PrintParameterType type) {
     return std::to_string(static_cast<std::uint32_t>(type));
@@ -31,9 +30,9 @@ Result<PrintParameterType> type_of(std::string_view word) {
     const auto found = std::ranges::find_if(
         names, [word](const Named& named) { return named.name == word || number_of(named.type) == word; });
     return found == names.end()
-               ? Result<PrintParameterType>{Failure{
-                     FailureKind::usage, "there is no print parameter \"" + std::string{word} + "\": say " +
-                                             std::string{parameter_set_arguments[0].help}}}
+               ? Result<PrintParameterType>{Failure{FailureKind::usage,
+                                                    "there is no print parameter \"" + std::string{word} + "\": say " +
+                                                        std::string{parameter_set_arguments[0].help}}}
                : found->type;
 }
 

@@ -31,7 +31,7 @@ Result<bool> ConversationFiles::exists(const std::string& path) {
 }
 
 Result<void> ConversationFiles::write(const std::string& path, std::string_view bytes) {
-    return upload(printer_, path, bytes, options_);
+    return put_file(printer_, path, bytes, true, options_);
 }
 
 } // namespace linefeed::printer

@@ -151,7 +151,8 @@ Result<Json> query(PrinterClient& printer, const Order& order) {
     if (code.starts_with('?')) {
         code.erase(0, 1);
     }
-    const bool right = code.size() == 2 && std::ranges::all_of(code, [](unsigned char c) { return std::isalnum(c) != 0; });
+    const bool right =
+        code.size() == 2 && std::ranges::all_of(code, [](unsigned char c) { return std::isalnum(c) != 0; });
     const auto argument = unescaped_bytes(order.arguments.text("argument"));
     if (!right || !argument || argument->find_first_of("\r\n") != std::string::npos) {
         return wrong("an inquiry has two letters, e.g. SM, and at most one line behind them");
@@ -168,9 +169,8 @@ Result<Json> query(PrinterClient& printer, const Order& order) {
         return heard;
     });
     if (answers.empty()) {
-        return Failure{FailureKind::unreachable,
-                       printer.settings().address + ": the printer does not answer ?" + code +
-                           "; in standby, or with other firmware, it may not"};
+        return Failure{FailureKind::unreachable, printer.settings().address + ": the printer does not answer ?" + code +
+                                                     "; in standby, or with other firmware, it may not"};
     }
     return json_result({{"inquiry", '?' + code}, {"complete", complete}, {"answers", std::move(answers)}});
 }

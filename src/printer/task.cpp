@@ -63,9 +63,8 @@ bool is_feeding(const Command& command) {
 
 /// nullptr = linefeed does not know it.
 const Command* find_command(const CommandId& id) {
-    const auto found = std::ranges::find_if(protocol::command_table, [&id](const Command& row) {
-        return row.group == id.group && row.code == id.code;
-    });
+    const auto found = std::ranges::find_if(
+        protocol::command_table, [&id](const Command& row) { return row.group == id.group && row.code == id.code; });
     return found == protocol::command_table.end() ? nullptr : &*found;
 }
 
@@ -147,9 +146,9 @@ Danger danger_of(const Command& command) {
 }
 
 bool empties_fifo(const CommandId& command) {
-    return command.group == Group::action && (command.code == code(Action::flush_fifo) ||
-                                              command.code == code(Action::factory_reset) ||
-                                              command.code == code(Action::power_off));
+    return command.group == Group::action &&
+           (command.code == code(Action::flush_fifo) || command.code == code(Action::factory_reset) ||
+            command.code == code(Action::power_off));
 }
 
 Result<Danger> danger_of(const Task& task, const Arguments& arguments) {

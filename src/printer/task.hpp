@@ -38,15 +38,15 @@ struct Argument {
     bool positional = false;
     std::uint64_t smallest = 0; ///< of a number
     std::uint64_t largest = UINT32_MAX;
-    std::string_view option{};  ///< on the command line, if not as `name`: "--set"
+    std::string_view option{};   ///< on the command line, if not as `name`: "--set"
     bool value_optional = false; ///< the option may stand without its value, which is empty then
 };
 
 /// The arguments of a task, checked against its list. Flow: read(), then the getters of what the list has.
 class Arguments {
 public:
-    /// `object` is a JSON object, or null for none. FailureKind::usage: a member that the task does not know, of another
-    /// type or out of range, or one that must be there and is not.
+    /// `object` is a JSON object, or null for none. FailureKind::usage: a member that the task does not know, of
+    /// another type or out of range, or one that must be there and is not.
     [[nodiscard]] static Result<Arguments> read(std::span<const Argument> known, const Json& object);
     /// The same from JSON text; empty = none.
     [[nodiscard]] static Result<Arguments> parse(std::span<const Argument> known, std::string_view text);
@@ -96,8 +96,8 @@ struct Task {
 
     std::string_view name; ///< words as on the command line, "nozzle open"
     Kind kind = Kind::look;
-    std::string_view help;                ///< one line
-    std::span<const CommandId> uses;      ///< what it sends and reads
+    std::string_view help;           ///< one line
+    std::span<const CommandId> uses; ///< what it sends and reads
     std::span<const Argument> arguments{};
     Result<Json> (*run)(PrinterClient& printer, const Order& order) = nullptr;
     /// For tasks that send what their arguments say; nullptr = `uses` decides.

@@ -92,7 +92,7 @@ std::optional<Ending> Line::wait_until_idle() {
 void Line::serve() {
     std::unique_lock lock{mutex_};
     while (true) {
-        changed_.wait(lock, [this] { return closing_ || (active_ && !begun_); });
+        changed_.wait(lock, [this] { return closing_ || (active_ && !begun_ && reserved_ == 0); });
         if (!active_ || begun_) {
             return;
         }

@@ -86,9 +86,14 @@ public:
     /// See printer::acknowledge().
     [[nodiscard]] Result<void> acknowledge(std::uint32_t error);
     /// Carries out one of printer::tasks(); `arguments` and the answer are JSON. What disturbs the feeding or loses
-    /// what is in the printer is refused while a job is on the line, and no job starts while that is being done:
-    /// FailureKind::stopped.
-    [[nodiscard]] Result<std::string> carry_out(const printer::Task& task, std::string_view arguments);
+    /// what is in the printer is refused while a job is on the line, and a job that is started meanwhile waits for the
+    /// end of it: FailureKind::stopped. `check` says whether what empties the FIFO may be done, asked once no job can
+    /// start.
+    [[nodiscard]] Result<std::string> carry_out(const printer::Task& task, std::string_view arguments,
+                                                const std::function<Result<void>()>& check);
+    /// A conversation of its own with the printer. `alone`: refused while a job is on the line, and no job starts
+    /// meanwhile.
+    [[nodiscard]] Result<void> talk(bool alone, const std::function<Result<void>(printer::PrinterClient&)>& words);
     /// Holds the panel for so long from now, or releases it.
     [[nodiscard]] Result<void> hold_panel(std::optional<Duration> time);
     [[nodiscard]] const std::string& printer() const { return printer_; }
@@ -103,7 +108,7 @@ private:
                std::optional<RecordNumber> record = {});
 
     // line_printer.cpp: the printer besides printing
-    [[nodiscard]] Result<void> reserve();
+    [[nodiscard]] Result<std::shared_ptr<void>> reserve();
     [[nodiscard]] Result<printer::ClientSettings> client_settings() const;
     [[nodiscard]] std::vector<daemon::Finding> look_at_printer(const printer::ClientSettings& client,
                                                                bool may_be_printing);
@@ -136,7 +141,7 @@ private:
     std::uint64_t orders_ = 0;           ///< so many so far
     bool begun_ = false;                 ///< the thread has taken the order
     bool checking_ = false;              ///< preflight
-    std::uint32_t reserved_ = 0; ///< for so many commands that no job may meet: none starts meanwhile
+    std::uint32_t reserved_ = 0; ///< for so many commands that no job may meet: the next one waits for their end
     bool stop_requested_ = false;
     bool held_ = false; ///< stopped by an operator
     bool closing_ = false;

@@ -1,5 +1,8 @@
 // What is asked of a printer besides printing.
 #include "daemon/job_run.hpp"
+#include "printer/file_transfer.hpp"
+#include "printer/local_file.hpp"
+#include "printer/printer_path.hpp"
 #include "printer/tasks.hpp"
 #include "service/service.hpp"
 
@@ -42,13 +45,51 @@ Result<void> Service::suspend_panel(const daemon::Caller& caller, std::string_vi
     });
 }
 
+Result<std::string> Service::read_file(std::string_view printer, std::string_view path) {
+    const auto line = known_line(printer);
+    if (!line) {
+        return line.error();
+    }
+    std::string bytes;
+    const auto read = (*line)->talk(false, [&](printer::PrinterClient& client) -> Result<void> {
+        const auto file = printer::printer_file(path, client.settings().escapes);
+        auto got = file ? printer::download(client, *file) : file.error();
+        if (!got) {
+            return got.error();
+        }
+        bytes = *std::move(got);
+        return {};
+    });
+    return read ? Result<std::string>{std::move(bytes)} : read.error();
+}
+
+Result<void> Service::write_file(const daemon::Caller& caller, std::string_view printer,
+                                 const daemon::PrinterFile& file) {
+    const auto bytes = printer::read_file(file.content, printer::max_file_bytes);
+    if (!bytes) {
+        return bytes.error();
+    }
+    const Act act{"write file", "printer " + std::string{printer},
+                  spool::JsonObject{}.add("path", file.path).add("sha256", printer::sha256_hex(*bytes))};
+    return audited(caller, act, [&]() -> Result<void> {
+        const auto line = known_line(printer);
+        if (!line) {
+            return line.error();
+        }
+        return (*line)->talk(file.replace, [&](printer::PrinterClient& client) -> Result<void> {
+            const auto path = printer::printer_file(file.path, client.settings().escapes);
+            return path ? printer::put_file(client, *path, *bytes, file.replace) : path.error();
+        });
+    });
+}
+
 Result<std::string> Service::inspect(std::string_view printer, std::string_view what, std::string_view arguments) {
     const auto line = known_line(printer);
     if (!line) {
         return line.error();
     }
     const auto task = printer::known_task(what, printer::Task::Kind::look);
-    return task ? (*line)->carry_out(**task, arguments) : task.error();
+    return task ? (*line)->carry_out(**task, arguments, [] { return Result<void>{}; }) : task.error();
 }
 
 Result<std::string> Service::command(const daemon::Caller& caller, std::string_view printer, std::string_view what,
@@ -64,17 +105,7 @@ Result<std::string> Service::command(const daemon::Caller& caller, std::string_v
         if (!task) {
             return task.error();
         }
-        const auto read = printer::Arguments::parse((*task)->arguments, arguments);
-        const auto empties = read ? printer::empties_fifo(**task, *read) : read.error();
-        if (!empties) {
-            return empties.error();
-        }
-        if (*empties) {
-            if (auto known = check_fifo_known((*line)->printer()); !known) {
-                return known.error();
-            }
-        }
-        return (*line)->carry_out(**task, arguments);
+        return (*line)->carry_out(**task, arguments, [&] { return check_fifo_known((*line)->printer()); });
     });
 }
 
@@ -94,7 +125,8 @@ Result<void> Service::check_fifo_known(const std::string& printer) {
             }
             if (facts->printer() == printer || (*open && (*open)->printer == address)) {
                 return Failure{FailureKind::stopped,
-                               "nobody knows yet which records of " + name_of(id) + " the printer has printed, and what "
+                               "nobody knows yet which records of " + name_of(id) +
+                                   " the printer has printed, and what "
                                    "it knows would be lost: start or resume that job first, which asks it"};
             }
         }
