@@ -3,6 +3,7 @@
 #include "cli/dry_run.hpp"
 #include "cli/print_flow.hpp"
 #include "cli/print_report.hpp"
+#include "cli/printer_profile.hpp"
 #include "daemon/record_text.hpp"
 #include "daemon/wall_clock.hpp"
 
@@ -151,7 +152,16 @@ Result<ExitCode> PrintCommand::report(spool::Spool& spool, feeder::Outcome told)
     return report->code;
 }
 
-ExitCode run_print(const PrintOptions& options) {
+ExitCode run_print(const PrintOptions& asked) {
+    PrintOptions options = asked;
+    if (protocol::is_automatic(options.layout.profile) && !options.dry_run) {
+        const auto profile = ask_profile(options);
+        if (!profile) {
+            show_failure(profile.error(), options.json);
+            return exit_code(profile.error().kind);
+        }
+        options.layout.profile = *profile;
+    }
     PrintCommand command{options};
     const auto result = command.run();
     if (result) {

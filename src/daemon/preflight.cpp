@@ -65,10 +65,24 @@ Finding identity(const protocol::VersionInfo& version, const PreflightRules& rul
 Finding profile(const protocol::VersionInfo& version, const PreflightRules& rules) {
     constexpr const char* check = "profile";
     const std::string_view chosen = rules.printer.profile.name;
+    const auto told = protocol::profile_for(version.type, version.firmware);
+    if (protocol::is_automatic(rules.printer.profile)) {
+        return told ? ok(check, "auto: " + std::string{told->name} + ", since it is a " + version.type + ", firmware " +
+                                    version.firmware)
+                    : warning(check, "auto, but the printer does not say a type and a firmware that are known",
+                              "Name its profile in the settings: until then records with ^ or \\ are refused.");
+    }
     const bool says_neo = version.type.find("2neo") != std::string::npos;
     const bool chosen_neo = chosen.starts_with("jet2neo");
     if (version.type.empty()) {
         return ok(check, std::string{chosen} + ", as configured; the printer does not say its type");
+    }
+    if (told && says_neo == chosen_neo && told->escapes != rules.printer.profile.escapes) {
+        return warning(
+            check,
+            "the printer says that it is a " + version.type + ", firmware " + version.firmware + ": that is " +
+                std::string{told->name} + ", and its profile is " + std::string{chosen},
+            "Set the printer's profile to what it is, or to auto: with a wrong one, ^ and \\ come out wrong.");
     }
     if (says_neo != chosen_neo) {
         return warning(check,

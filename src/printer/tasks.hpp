@@ -15,6 +15,7 @@ namespace linefeed::printer {
 [[nodiscard]] std::span<const Task> look_tasks();   ///< look_tasks.cpp
 [[nodiscard]] std::span<const Task> change_tasks(); ///< change_tasks.cpp
 [[nodiscard]] std::span<const Task> file_tasks();   ///< file_tasks.cpp
+[[nodiscard]] std::span<const Task> probe_tasks();  ///< probe.cpp
 [[nodiscard]] std::span<const Task> raw_tasks();    ///< raw_tasks.cpp
 
 /// All of them, by theme.

@@ -47,7 +47,7 @@ struct Profile {
 };
 
 /// The profiles that ship with linefeed; the first is the default.
-inline constexpr std::array<Profile, 4> profiles{{
+inline constexpr std::array<Profile, 5> profiles{{
     {"jet3up", "JET3up", EscapeMode::backslash, false, true, PrinterFamily::jet3up, true, true},
     {"jet3", "JET3 (knows no escapes: ^ and \\ cannot be printed)", EscapeMode::none, false, true, PrinterFamily::jet3,
      true, false},
@@ -55,6 +55,8 @@ inline constexpr std::array<Profile, 4> profiles{{
      false},
     {"jet2neo-v71", "JET2neo up to V71.0.27.00 (knows no escapes)", EscapeMode::none, false, true,
      PrinterFamily::jet2neo, false, false},
+    // Until the printer has told: records that need an escape are refused, and all others mean the same everywhere.
+    {"auto", "as the printer says (?VS)", EscapeMode::none, false, true, PrinterFamily::jet3up, true, true},
 }};
 
 /// The profile of that name.
@@ -71,5 +73,10 @@ inline constexpr std::array<Profile, 4> profiles{{
 /// it), `firmware` e.g. "V60.0.1.17". What the manual ties to a version is set by the version. std::nullopt for a type
 /// or a version that cannot be read.
 [[nodiscard]] std::optional<Profile> profile_for(std::string_view type, std::string_view firmware);
+
+/// The profile is to be chosen by what the printer says.
+[[nodiscard]] constexpr bool is_automatic(const Profile& profile) {
+    return profile.name == "auto";
+}
 
 } // namespace linefeed::protocol

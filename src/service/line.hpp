@@ -96,6 +96,9 @@ public:
     [[nodiscard]] Result<void> talk(bool alone, const std::function<Result<void>(printer::PrinterClient&)>& words);
     /// Holds the panel for so long from now, or releases it.
     [[nodiscard]] Result<void> hold_panel(std::optional<Duration> time);
+    /// That of the settings; an automatic one as the printer has told, which is asked if it has not yet. Automatic
+    /// still if it does not tell.
+    [[nodiscard]] protocol::Profile profile();
     [[nodiscard]] const std::string& printer() const { return printer_; }
     [[nodiscard]] const daemon::LineMeters& meters() const { return meters_; }
     [[nodiscard]] const daemon::FrameHistory& frames() const { return frames_; }

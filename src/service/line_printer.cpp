@@ -38,6 +38,29 @@ std::vector<daemon::Finding> Line::look_at_printer(const printer::ClientSettings
     return daemon::judge(facts, {*all, *all->printer(printer_), known_serial_number, may_be_printing});
 }
 
+protocol::Profile Line::profile() {
+    const SharedSettings all = settings();
+    const config::PrinterSettings* const own = all->printer(printer_);
+    const protocol::Profile chosen = own == nullptr ? protocol::profiles.front() : own->profile;
+    if (!protocol::is_automatic(chosen)) {
+        return chosen;
+    }
+    const auto heard = [this] {
+        const std::lock_guard lock{mutex_};
+        return heard_.version;
+    };
+    auto version = heard();
+    const auto client = version ? Result<printer::ClientSettings>{Failure{}} : client_settings();
+    if (client) {
+        const auto connected = printer::PrinterClient::connect(*client);
+        version = connected ? (*connected)->ask<protocol::VersionInfo>(protocol::Parameter::VS) : std::nullopt;
+        const std::lock_guard lock{mutex_};
+        heard_.version = version ? version : heard_.version;
+    }
+    const auto told = version ? protocol::profile_for(version->type, version->firmware) : std::nullopt;
+    return told.value_or(chosen);
+}
+
 Result<std::vector<daemon::Finding>> Line::preflight() {
     const auto client = client_settings();
     return client ? Result<std::vector<daemon::Finding>>{look_at_printer(*client, !idle())} : client.error();

@@ -53,7 +53,8 @@ Result<spool::JobSpec> spec_of(const std::filesystem::path& file, const intake::
 }
 
 /// How a request wants its file to be read. FailureKind::usage if it names what is not configured.
-Result<intake::Layout> layout_for(const daemon::ImportRequest& request, const config::Settings& settings) {
+Result<intake::Layout> layout_for(const daemon::ImportRequest& request, const config::Settings& settings,
+                                  const std::shared_ptr<Line>& line) {
     const config::LayoutSettings* const layout = settings.layout(request.layout);
     const config::PrinterSettings* const printer = settings.printer(request.printer);
     if (!request.file.is_absolute()) {
@@ -66,7 +67,7 @@ Result<intake::Layout> layout_for(const daemon::ImportRequest& request, const co
         return Failure{FailureKind::usage, "there is no printer \"" + request.printer + '"'};
     }
     return layout_of(layout == nullptr ? config::LayoutSettings{} : *layout,
-                     printer == nullptr ? protocol::profiles.front() : printer->profile);
+                     line == nullptr ? protocol::profiles.front() : line->profile());
 }
 
 spool::Ticket ticket_for(const daemon::Caller& caller, const daemon::ImportRequest& request) {
@@ -129,7 +130,7 @@ Result<ImportAnswer> Service::import(const daemon::Caller& caller, const daemon:
         if (ending_) {
             return Failure{FailureKind::stopped, "the service is ending"};
         }
-        const auto layout = layout_for(request, *settings());
+        const auto layout = layout_for(request, *settings(), line(request.printer));
         if (!layout) {
             return layout.error();
         }

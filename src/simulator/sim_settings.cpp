@@ -112,7 +112,7 @@ void set_input_function(PrinterSettings& printer, const std::string& typed) {
 
 void set_profile(PrinterSettings& printer, const SimOptions& typed) {
     const auto profile = protocol::profile_by_name(typed.profile);
-    if (!profile) {
+    if (!profile || protocol::is_automatic(*profile)) {
         refuse("--profile", "jet3, jet3up, jet2neo or jet2neo-v71 expected, not \"" + typed.profile + "\"");
     }
     printer.profile = *profile;

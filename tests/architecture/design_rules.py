@@ -18,7 +18,7 @@ MAY_USE = {
     "daemon": {"base", "protocol", "feeder", "session", "link", "printer", "spool", "intake", "config"},
     "api": {"base", "protocol", "link", "printer", "spool", "config", "daemon"},
     "service": {"base", "protocol", "feeder", "session", "link", "printer", "spool", "intake", "config", "daemon"},
-    "cli": {"base", "protocol", "feeder", "session", "link", "spool", "intake", "config", "daemon"},
+    "cli": {"base", "protocol", "feeder", "session", "link", "printer", "spool", "intake", "config", "daemon"},
     "client": {"base", "protocol", "link", "printer", "spool", "intake", "config", "daemon", "api", "cli"},
     "linefeed": {"base", "protocol", "printer", "intake", "daemon", "cli", "client"},
     "linefeedd": {"base", "spool", "config", "daemon", "service", "api", "cli"},

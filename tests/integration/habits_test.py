@@ -63,6 +63,17 @@ class Habits(harness.TestCase):
     def test_a_printer_without_escapes(self):
         self.run_with("--profile", "jet3")
 
+    def test_the_printer_says_what_it_is(self):
+        file = self.write_csv([["a^b"], ["a\\b"]])
+        old = self.simulator("--profile", "jet3")
+        refused = self.print(file, old, "--profile", "auto")
+        self.assert_code(5, refused)
+        self.assertIn("without escapes", refused.out + refused.err)
+        self.assertEqual([], old.prints())
+        new = self.simulator("--profile", "jet2neo", "--rate", 300)
+        self.assert_code(0, self.print(file, new, "--profile", "auto"))
+        self.assertEqual([(1, "a^b"), (2, "a\\b")], new.prints())
+
     def test_several_habits_at_once(self):
         self.run_with("--habit", "stale-mail-status", "--habit", "stop-at-only-while-printing", "--habit", "sixth-value",
                       "--habit", "lfcr", "--echo", "--reply-delay", 20)

@@ -41,6 +41,13 @@ TEST(Profile, shouldKnowWhatTheFamiliesHave) {
     EXPECT_EQ(jet2neo.usb_root(), "USB-Stick\\LJet2neo");
 }
 
+TEST(Profile, shouldRiskNothingBeforeThePrinterHasTold) {
+    const Profile automatic = profile_by_name("auto").value();
+    EXPECT_TRUE(is_automatic(automatic));
+    EXPECT_EQ(automatic.escapes, EscapeMode::none) << "what needs escapes is refused";
+    EXPECT_FALSE(is_automatic(profile_by_name("jet3").value()));
+}
+
 Profile of(std::string_view type, std::string_view firmware) {
     const auto profile = profile_for(type, firmware);
     EXPECT_TRUE(profile) << type << ' ' << firmware;

@@ -1,0 +1,14 @@
+// `--profile auto`: the firmware profile as the printer says what it is.
+#pragma once
+
+#include "base/failure.hpp"
+#include "cli/print_options.hpp"
+#include "protocol/profile.hpp"
+
+namespace linefeed::cli {
+
+/// Asks the printer of `options` (`?VS`). FailureKind::unreachable: it cannot be reached, or does not tell: nothing is
+/// guessed, since records would come out wrong.
+[[nodiscard]] Result<protocol::Profile> ask_profile(const PrintOptions& options);
+
+} // namespace linefeed::cli
