@@ -61,7 +61,7 @@ protected:
         const auto next = spool->begin_run(job, range(13, 100), "{}");
         return keep(next) && keep_append(*next, LedgerKind::intent, range(31, 40)) &&
                keep_append(*next, LedgerKind::intent, range(12, 12)) && keep(spool->last_run(job)) &&
-               keep(spool->verify_ledger());
+               keep(spool->last_ledger_row(job)) && keep(spool->doubt_rows(job, run)) && keep(spool->verify_ledger());
     }
     /// As another process reads it.
     bool look() {
