@@ -202,21 +202,23 @@ void Feeder::on_counters(const protocol::Counters& counters, Instant now, Action
     if (phase_ == Phase::ended) {
         return;
     }
-    if (counters.total) {
-        counted(counters.total, now, out);
-    } else {
+    if (!counters.total) {
         counters_lost(now, out); // with a TAB less it is not in its place
+        return;
     }
+    if (polls()) {
+        counters_outstanding_ = std::max(0, counters_outstanding_ - 1);
+        facts_.total_prints = counters.total;
+        print_counters(*counters.total, now, out);
+        return;
+    }
+    counted(counters.total, now, out);
 }
 
 /// `total` is absent if the printer does not tell it.
 void Feeder::counted(std::optional<std::uint32_t> total, Instant now, Actions& out) {
     facts_.total_prints = total;
     counters_outstanding_ = std::max(0, counters_outstanding_ - 1);
-    if (polls()) {
-        print_counters(now, out);
-        return;
-    }
     if (counters_outstanding_ > 0 || mail_reads_ < 2) {
         return; // asked before the printer stood
     }

@@ -212,7 +212,7 @@ private:
     void ask_for_proof(Instant now, Actions& out);
     void confirm(RecordNumber through, Actions& out);
     [[nodiscard]] std::uint64_t prints_through(RecordNumber number) const;
-    void print_counters(Instant now, Actions& out);
+    void print_counters(std::uint32_t total, Instant now, Actions& out);
     [[nodiscard]] bool stop_would_show() const;
     [[nodiscard]] bool stop_point_vanished(Instant now, Actions& out);
     void stop_suspected(Instant now, Actions& out);

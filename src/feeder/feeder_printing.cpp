@@ -204,10 +204,10 @@ void Feeder::confirm(RecordNumber through, Actions& out) {
     }
 }
 
-void Feeder::print_counters(Instant now, Actions& out) {
+void Feeder::print_counters(std::uint32_t total, Instant now, Actions& out) {
     std::optional<std::uint32_t> prints;
-    if (facts_.total_prints && total_before_) {
-        prints = *facts_.total_prints - *total_before_;
+    if (total_before_) {
+        prints = total - *total_before_;
     }
     const std::uint64_t sent = prints_through(refill_.sent_through()) + (marker_sent_ ? 1 : 0);
     switch (counter_proof_.counted(prints, prints_through(reported_through_), sent, stop_would_show(), now)) {

@@ -199,6 +199,14 @@ TEST_F(LedgerKeeperTest, shouldFindAPrintThatMayBeBrokenOffInWhatARunLeftOpen) {
     EXPECT_TRUE(spool_->verify_ledger());
 }
 
+TEST_F(LedgerKeeperTest, shouldHaveNothingToSayOfABrokenOffPrintWhereNothingWasIssued) {
+    feeder::Outcome outcome = ended(feeder::OutcomeCode::no_answer);
+    outcome.broken_off = RecordNumber{77};
+    const std::size_t rows = kinds().size();
+    ASSERT_TRUE(keeper().finish(outcome));
+    EXPECT_EQ(kinds().size(), rows);
+}
+
 TEST_F(LedgerKeeperTest, shouldFindTheEndOfACrashedRunWhenTheImportHasReachedIt) {
     RecordPage page{RecordNumber{1}, {}, {}};
     for (std::uint32_t number = 1; number <= 300; ++number) {
