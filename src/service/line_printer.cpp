@@ -45,14 +45,14 @@ protocol::Profile Line::profile() {
     if (!protocol::is_automatic(chosen)) {
         return chosen;
     }
-    const auto heard = [this] {
+    std::optional<protocol::VersionInfo> version;
+    {
         const std::lock_guard lock{mutex_};
-        return heard_.version;
-    };
-    auto version = heard();
-    const auto client = version ? Result<printer::ClientSettings>{Failure{}} : client_settings();
-    if (client) {
-        const auto connected = printer::PrinterClient::connect(*client);
+        version = heard_.version;
+    }
+    if (!version) {
+        const auto client = client_settings();
+        const auto connected = client ? printer::PrinterClient::connect(*client) : client.error();
         version = connected ? (*connected)->ask<protocol::VersionInfo>(protocol::Parameter::VS) : std::nullopt;
         const std::lock_guard lock{mutex_};
         heard_.version = version ? version : heard_.version;

@@ -110,10 +110,28 @@ TEST_F(PreflightTest, shouldNoticeAProfileOfAnotherKind) {
     facts_.version->type = "JET2neo";
     EXPECT_THAT(finding("profile"), HasSubstr("warning: the printer says that it is a JET2neo, and its profile is "
                                               "jet3up"));
+    facts_.version->firmware = "V75.0.11.2";
     printer_.profile = *protocol::profile_by_name("jet2neo");
     EXPECT_EQ(finding("profile"), "ok: jet2neo fits JET2neo");
     facts_.version->type.clear();
     EXPECT_THAT(finding("profile"), HasSubstr("ok: "));
+}
+
+TEST_F(PreflightTest, shouldSayWhichProfileAnAutomaticOneIs) {
+    printer_.profile = *protocol::profile_by_name("auto");
+    EXPECT_EQ(finding("profile"), "ok: auto: jet3up, since it is a JET3up, firmware V62.0.9.0");
+    facts_.version->type = "LJ9";
+    EXPECT_THAT(finding("profile"), HasSubstr("warning: auto, but the printer does not say"));
+    EXPECT_THAT(finding("profile"), HasSubstr("Name its profile"));
+}
+
+TEST_F(PreflightTest, shouldNoticeAProfileWithOtherEscapes) {
+    facts_.version->type = "JET3";
+    EXPECT_THAT(finding("profile"),
+                HasSubstr("warning: the printer says that it is a JET3, firmware V62.0.9.0: that is "
+                          "jet3, and its profile is jet3up"));
+    printer_.profile = *protocol::profile_by_name("jet3");
+    EXPECT_EQ(finding("profile"), "ok: jet3 fits JET3");
 }
 
 TEST_F(PreflightTest, shouldHaveWordsForEveryState) {
