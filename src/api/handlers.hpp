@@ -28,6 +28,7 @@ namespace linefeed::api::handlers {
 [[nodiscard]] Outcome start_printer(const Request& request, Services& services);
 [[nodiscard]] Outcome stop_printer(const Request& request, Services& services);
 [[nodiscard]] Outcome acknowledge(const Request& request, Services& services);
+[[nodiscard]] Outcome accept_printer(const Request& request, Services& services);
 [[nodiscard]] Outcome suspend(const Request& request, Services& services);
 
 // job_handlers.cpp, job_read_handlers.cpp

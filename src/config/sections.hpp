@@ -60,6 +60,7 @@ void visit(V& v, S& s) {
     v.value("poll_max", s.pacing.poll_max, DurationValue{1ms, 1s});
     v.value("connect_timeout", s.connect_timeout, DurationValue{shortest_timeout, longest_timeout});
     v.value("reply_timeout", s.reply_timeout, DurationValue{shortest_timeout, longest_timeout});
+    v.value("watch_interval", s.watch_interval, DurationValue{0us, 1h});
     v.section("queue", s.queue);
 }
 

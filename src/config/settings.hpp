@@ -49,6 +49,8 @@ struct PrinterSettings {
     feeder::PacingSettings pacing{};
     Duration connect_timeout = std::chrono::seconds{3}; ///< 100 ms…10 min
     Duration reply_timeout = std::chrono::seconds{2};   ///< 100 ms…10 min
+    /// How often it is looked at while linefeed does nothing with it; 0 (never), or 1 s…1 h.
+    Duration watch_interval = std::chrono::seconds{5};
     QueueSettings queue{};
 };
 

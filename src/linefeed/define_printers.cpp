@@ -19,6 +19,7 @@ void add_printer(CLI::App& app, Commands& commands) {
     const auto options = std::make_shared<client::PrinterOptions>();
     const auto error = std::make_shared<bool>(false);
     const auto code = std::make_shared<std::int64_t>(0);
+    const auto serial_number = std::make_shared<std::string>();
     const auto hold_s = std::make_shared<std::int64_t>(60);
     CLI::App& printer = *app.add_subcommand("printer", "Show one printer, or do something with it");
     printer.add_option("PRINTER", options->printer, "Its name in the configuration")->required();
@@ -33,18 +34,22 @@ void add_printer(CLI::App& app, Commands& commands) {
     acknowledge.add_option("ERROR", *code, "Its number, see linefeed printer PRINTER; another one is left alone")
         ->required()
         ->check(CLI::Range(1, 33'554'431));
+    CLI::App& accept = *printer.add_subcommand("accept", "The printer was exchanged: accept the machine that answers now");
+    accept.add_option("SERIAL", *serial_number, "Its serial number, see linefeed printer PRINTER; another one is refused")
+        ->required();
     CLI::App& suspend = *printer.add_subcommand("suspend", "Suspend the panel, so that nobody presses a key on it");
     suspend.add_option("--hold", *hold_s, "Seconds until it is given back by itself")
         ->capture_default_str()
         ->check(CLI::Range(1, 86'400));
     CLI::App& release = *printer.add_subcommand("release", "Give the panel back");
-    for (CLI::App* const action : {&preflight, &frames, &acknowledge, &suspend, &release}) {
+    for (CLI::App* const action : {&preflight, &frames, &acknowledge, &accept, &suspend, &release}) {
         action->fallthrough();
     }
 
     commands.push_back({&preflight, [options] { return client::run_preflight(*options); }});
     commands.push_back({&frames, [options, error] { return client::run_frames({*options, *error}); }});
     commands.push_back({&acknowledge, [options, code] { return client::run_acknowledge({*options, *code}); }});
+    commands.push_back({&accept, [options, serial_number] { return client::run_accept({*options, *serial_number}); }});
     commands.push_back({&suspend, [options, hold_s] { return client::run_suspend({*options, true, *hold_s}); }});
     commands.push_back({&release, [options] { return client::run_suspend({*options, false}); }});
     commands.push_back({&printer, [options] { return client::run_printer(*options); }});

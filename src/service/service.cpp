@@ -89,8 +89,15 @@ void Service::open_lines() {
         if (line(printer.name) != nullptr) {
             continue;
         }
-        const auto held = access_.write([&](spool::Spool& spool) { return spool.printer_held(printer.name); });
-        auto opened = std::make_shared<Line>(services, printer.name, now, !held || *held);
+        const auto past = access_.write([&](spool::Spool& spool) -> Result<Line::Past> {
+            const auto held = spool.printer_held(printer.name);
+            const auto serial_number = spool.serial_number(printer.name);
+            if (!held || !serial_number) {
+                return held ? serial_number.error() : held.error();
+            }
+            return Line::Past{*held, *serial_number};
+        });
+        auto opened = std::make_shared<Line>(services, printer.name, now, past ? *past : Line::Past{true, {}});
         const std::lock_guard lock{parts_mutex_};
         lines_.emplace(printer.name, std::move(opened));
     }
@@ -129,6 +136,7 @@ void Service::shut_down() {
     folders.clear();
     for (const LinePtr& line : all) {
         static_cast<void>(line->wait_until_idle());
+        line->close(); // all of them before the first is waited for to its end
     }
     events_.flush();
 }

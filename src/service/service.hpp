@@ -112,6 +112,8 @@ public:
     [[nodiscard]] Result<std::vector<daemon::FrameView>> frames(std::string_view printer, bool error) override;
     [[nodiscard]] Result<void> acknowledge(const daemon::Caller& caller, std::string_view printer,
                                            std::uint32_t error) override;
+    [[nodiscard]] Result<void> accept_printer(const daemon::Caller& caller, std::string_view printer,
+                                              const std::string& serial_number) override;
     [[nodiscard]] Result<void> suspend_panel(const daemon::Caller& caller, std::string_view printer, bool suspend,
                                              Duration hold) override;
 

@@ -129,6 +129,10 @@ public:
     /// Whether an operator has stopped a printer, durable at return.
     [[nodiscard]] Result<void> hold_printer(const std::string& printer, bool held);
     [[nodiscard]] Result<bool> printer_held(const std::string& printer);
+
+    /// The serial number of the machine that stands behind the name of a printer; empty = not known yet.
+    [[nodiscard]] Result<std::string> serial_number(const std::string& printer);
+    [[nodiscard]] Result<void> write_serial_number(const std::string& printer, const std::string& serial_number);
     /// A place before all others of the printer's queue, or behind them.
     [[nodiscard]] Result<std::int64_t> first_place(const std::string& printer);
     [[nodiscard]] Result<std::int64_t> last_place(const std::string& printer);

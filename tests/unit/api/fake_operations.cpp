@@ -400,6 +400,13 @@ Result<void> FakeOperations::acknowledge(const Caller& caller, std::string_view 
     return known ? changed : known;
 }
 
+Result<void> FakeOperations::accept_printer(const Caller& caller, std::string_view printer,
+                                            const std::string& serial_number) {
+    const auto known = check_printer(printer);
+    const auto changed = change(caller, "accept", std::string{printer} + ' ' + serial_number);
+    return known ? changed : known;
+}
+
 Result<void> FakeOperations::suspend_panel(const Caller& caller, std::string_view printer, bool suspend,
                                            Duration hold) {
     const auto known = check_printer(printer);

@@ -66,6 +66,8 @@ public:
     Result<void> reprint(const daemon::Caller& caller, spool::JobId id, const daemon::ReprintRequest& request) override;
     Result<void> settle(const daemon::Caller& caller, spool::JobId id, const daemon::SettleRequest& request) override;
     Result<void> acknowledge(const daemon::Caller& caller, std::string_view printer, std::uint32_t error) override;
+    Result<void> accept_printer(const daemon::Caller& caller, std::string_view printer,
+                                const std::string& serial_number) override;
     Result<void> suspend_panel(const daemon::Caller& caller, std::string_view printer, bool suspend,
                                Duration hold) override;
     Result<std::vector<std::string>> reload(const daemon::Caller& caller) override;

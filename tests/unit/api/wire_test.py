@@ -761,7 +761,7 @@ class Metrics(unittest.TestCase):
             self.assertEqual([], connected, "an idle printer is not one whose link is lost")
 
     def test_every_name_that_was_promised_is_there(self):
-        names = """build_info start_time_seconds printer_up printer_link_up printer_printing printer_error_code printer_fifo_entries
+        names = """build_info start_time_seconds printer_up printer_link_up printer_cover_open printer_other_machine printer_printing printer_error_code printer_fifo_entries
             printer_fifo_depth_entries printer_credit_records printer_print_rate_per_second printer_time_to_empty_seconds printer_data_left_seconds
             printer_queue_jobs printer_in_doubt_records printer_records_total printer_underruns_total printer_refills_total
             printer_links_lost_total printer_frames_unexpected_total printer_damaged_bytes_total printer_lead_time_seconds printer_refill_seconds

@@ -84,6 +84,19 @@ TEST_F(SpoolTicketsTest, shouldListWhatWasBegun) {
     EXPECT_THAT(jobs_of(spool.begun_jobs()), ElementsAre(b));
 }
 
+TEST_F(SpoolTicketsTest, shouldKeepWhichMachineStandsBehindTheNameOfAPrinter) {
+    {
+        Spool spool = open();
+        EXPECT_EQ(spool.serial_number("line1").value(), "");
+        ASSERT_TRUE(spool.write_serial_number("line1", "104711"));
+        ASSERT_TRUE(spool.write_serial_number("line2", "7"));
+        ASSERT_TRUE(spool.write_serial_number("line1", "104712"));
+    }
+    Spool spool = open();
+    EXPECT_EQ(spool.serial_number("line1").value(), "104712");
+    EXPECT_EQ(spool.serial_number("line2").value(), "7");
+}
+
 TEST_F(SpoolTicketsTest, shouldLoseTheTicketWithItsJob) {
     Spool spool = open();
     const JobId job = make_job(spool, 10).id;
