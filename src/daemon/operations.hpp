@@ -105,10 +105,10 @@ struct PrinterView {
     LinkState link = LinkState::down;
     bool watched = false; ///< looked at also while idle: `link` is by the last look then
     PrinterPhase phase = PrinterPhase::idle;
-    std::string machine;       ///< state in words as last reported; empty = never heard of
-    std::string nozzle;        ///< in words; empty = never heard of
+    std::string machine; ///< state in words as last reported; empty = never heard of
+    std::string nozzle;  ///< in words; empty = never heard of
     std::optional<bool> cover_open;
-    std::string serial_number; ///< `?VS`; empty = never heard of
+    std::string serial_number;       ///< `?VS`; empty = never heard of
     std::string known_serial_number; ///< of the machine that jobs may start on; empty = whichever answers first
     std::string firmware;
     std::optional<std::uint64_t> total_prints; ///< `?CC`

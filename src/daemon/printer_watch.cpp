@@ -59,8 +59,8 @@ void PrinterWatch::take_machine(const protocol::MachineStatus& now, const Known&
     } else if (now.error != before) {
         const bool stops = now.error.display() == protocol::ErrorDisplay::error ||
                            known.settings.policy(known.printer, now.error) == config::ErrorPolicy::stop;
-        news.push_back({stops ? event_kind::printer_error : event_kind::printer_warning,
-                        words_of(now.error, known.settings)});
+        news.push_back(
+            {stops ? event_kind::printer_error : event_kind::printer_warning, words_of(now.error, known.settings)});
     }
     if (now.cover_open && (!known.machine || !known.machine->cover_open)) {
         news.push_back({event_kind::printer_warning, "the head cover is open. Close it before the next start"});
@@ -83,9 +83,9 @@ void PrinterWatch::take_identity(const printer::Look& look, const Known& known, 
     if (here == known.serial_number) {
         other_machine_.clear();
     } else if (std::exchange(other_machine_, here) != here) {
-        news.push_back({event_kind::printer_warning,
-                        "another machine: serial number " + here + ", and it was " + known.serial_number +
-                            ". No job starts there before an operator has accepted it"});
+        news.push_back({event_kind::printer_warning, "another machine: serial number " + here + ", and it was " +
+                                                         known.serial_number +
+                                                         ". No job starts there before an operator has accepted it"});
     }
 }
 

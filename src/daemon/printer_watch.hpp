@@ -1,5 +1,5 @@
-// A printer with which nothing is done, watched: what is worth a word about one look at it after the other. An error that
-// comes while nobody prints should be known before the next start, not at it.
+// A printer with which nothing is done, watched: what is worth a word about one look at it after the other. An error
+// that comes while nobody prints should be known before the next start, not at it.
 #pragma once
 
 #include "config/settings.hpp"

@@ -34,8 +34,10 @@ void add_printer(CLI::App& app, Commands& commands) {
     acknowledge.add_option("ERROR", *code, "Its number, see linefeed printer PRINTER; another one is left alone")
         ->required()
         ->check(CLI::Range(1, 33'554'431));
-    CLI::App& accept = *printer.add_subcommand("accept", "The printer was exchanged: accept the machine that answers now");
-    accept.add_option("SERIAL", *serial_number, "Its serial number, see linefeed printer PRINTER; another one is refused")
+    CLI::App& accept =
+        *printer.add_subcommand("accept", "The printer was exchanged: accept the machine that answers now");
+    accept
+        .add_option("SERIAL", *serial_number, "Its serial number, see linefeed printer PRINTER; another one is refused")
         ->required();
     CLI::App& suspend = *printer.add_subcommand("suspend", "Suspend the panel, so that nobody presses a key on it");
     suspend.add_option("--hold", *hold_s, "Seconds until it is given back by itself")

@@ -81,11 +81,11 @@ Result<void> Line::accept(const std::string& serial_number) {
                        look.unreachable.empty() ? "the printer does not say its serial number" : look.unreachable};
     }
     if (look.version->serial_number != serial_number) {
-        return Failure{FailureKind::stopped, "the printer's serial number is " + look.version->serial_number +
-                                                 ", and not " + serial_number};
+        return Failure{FailureKind::stopped,
+                       "the printer's serial number is " + look.version->serial_number + ", and not " + serial_number};
     }
-    auto written = services_.access.write(
-        [&](spool::Spool& spool) { return spool.write_serial_number(printer_, serial_number); });
+    auto written =
+        services_.access.write([&](spool::Spool& spool) { return spool.write_serial_number(printer_, serial_number); });
     if (written) {
         const std::lock_guard lock{mutex_};
         known_serial_number_ = serial_number;

@@ -28,8 +28,7 @@ Result<void> Service::acknowledge(const daemon::Caller& caller, std::string_view
 
 Result<void> Service::accept_printer(const daemon::Caller& caller, std::string_view printer,
                                      const std::string& serial_number) {
-    const Act act{"accept", "printer " + std::string{printer},
-                  spool::JsonObject{}.add("serial_number", serial_number)};
+    const Act act{"accept", "printer " + std::string{printer}, spool::JsonObject{}.add("serial_number", serial_number)};
     return audited(caller, act, [&]() -> Result<void> {
         const auto line = known_line(printer);
         return line ? (*line)->accept(serial_number) : line.error();

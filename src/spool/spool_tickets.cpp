@@ -166,7 +166,8 @@ Result<void> Spool::write_serial_number(const std::string& printer, const std::s
     if (auto writable = state_->check_writable(); !writable) {
         return writable;
     }
-    auto statement = state_->database->prepare("INSERT OR REPLACE INTO printers (printer, serial_number) VALUES (?1, ?2)");
+    auto statement =
+        state_->database->prepare("INSERT OR REPLACE INTO printers (printer, serial_number) VALUES (?1, ?2)");
     if (!statement) {
         return statement.error();
     }

@@ -37,7 +37,7 @@ class Schemas(unittest.TestCase):
     """Every route of openapi.yaml is there, and what it answers fits the schema of that status and type."""
 
     BODIES = {
-        "printerStart": {"job": 12}, "printerAcknowledge": {"error": 1223}, "printerSuspend": {"suspend": True},
+        "printerStart": {"job": 12}, "printerAcknowledge": {"error": 1223}, "printerAccept": {"serial_number": "104711"}, "printerSuspend": {"suspend": True},
         "jobQueue": {"printer": "line1"}, "jobReprint": {"records": "1-5", "reason": "smudged"},
         "jobSettle": {"last_printed": "17"}, "import": {"file": "/etc/hostname"},
     }

@@ -1,7 +1,6 @@
 // What is worth a word about one look at an idle printer after the other.
-#include "daemon/printer_watch.hpp"
-
 #include "daemon/events.hpp"
+#include "daemon/printer_watch.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
