@@ -96,6 +96,8 @@ void visit(V& v, S& s) {
         Choice<Settle>{
             {{"in-place", Settle::in_place}, {"rename", Settle::rename}, {"done-companion", Settle::done_companion}}});
     v.value("poll_interval", s.poll_interval, DurationValue{shortest_timeout, 1h});
+    v.value("grown_files", s.grown_files,
+            Choice<GrownFiles>{{{"refuse", GrownFiles::refuse}, {"print", GrownFiles::print}}});
 }
 
 /// What is wrong with a listening address, a host name as it stands in `Host:`, an origin (scheme://host[:port]).

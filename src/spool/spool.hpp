@@ -101,6 +101,8 @@ public:
     /// The ready jobs with this content and layout, whatever file they came from, oldest first.
     [[nodiscard]] Result<std::vector<Job>> find_by_content(const std::string& content_sha256,
                                                            const std::string& layout);
+    /// The ready jobs whose first record has this frame, oldest first; none that were imported before schema 4.
+    [[nodiscard]] Result<std::vector<Job>> find_by_first_record(std::string_view frame);
     /// The ready jobs that were imported from this path, oldest first.
     [[nodiscard]] Result<std::vector<Job>> find_by_path(const std::string& path);
     /// The ready jobs that were imported from a source of these bytes, whatever its name and however it was read,

@@ -288,7 +288,7 @@ std::vector<FolderView> FakeOperations::folders() {
 Result<std::vector<EventView>> FakeOperations::events(std::uint64_t after, std::size_t limit) {
     const std::lock_guard lock{mutex_};
     std::vector<EventView> found;
-    for (std::size_t k = after; k < events_.size() && found.size() < limit; ++k) {
+    for (std::size_t k = std::max<std::size_t>(after, pruned_); k < events_.size() && found.size() < limit; ++k) {
         found.push_back(events_[k]);
     }
     return found;

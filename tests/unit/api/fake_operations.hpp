@@ -31,6 +31,8 @@ public:
     /// Every change waits until it is let go on.
     void hold(bool held) { held_ = held; }
     void add_event(std::string kind, std::string message);
+    /// The first so many are not kept any more.
+    void prune_events(std::size_t count) { pruned_ = count; }
     [[nodiscard]] std::size_t changes() { return audit_size(); }
     [[nodiscard]] std::string last_change();
     [[nodiscard]] std::optional<daemon::ImportRequest> last_import();
@@ -90,6 +92,7 @@ private:
     std::vector<daemon::PrinterView> printers_;
     std::map<spool::JobId, daemon::JobView> jobs_;
     std::vector<daemon::EventView> events_;
+    std::atomic<std::size_t> pruned_{0};
     std::vector<daemon::AuditView> audit_;
     std::map<std::uint64_t, std::function<void()>> subscribers_;
     std::uint64_t next_subscription_ = 1;

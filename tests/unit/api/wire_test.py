@@ -648,6 +648,23 @@ class Events(unittest.TestCase):
             self.assertEqual(self.read(file, 1)[0][0], 605)
             raw.close()
 
+    def test_a_reader_who_comes_too_late_is_told_that_he_missed_something(self):
+        with Service() as service:
+            service.tell("events 3 10")
+            service.tell("prune 4")
+            for position, gap in ((b"1", {"after": 1, "first": 5}), (b"4", None), (b"0", None)):
+                raw, file = self.open(service, b"Last-Event-ID: " + position + b"\r\n")
+                lines = self.head(file) + self.head(file)  # and "retry"
+                first = [file.readline().decode().strip() for _ in range(3)]
+                if gap:
+                    self.assertEqual(first[0], "event: gap", lines)
+                    self.assertEqual(json.loads(first[1].removeprefix("data: ")), gap)
+                    self.assertEqual(first[2], "", "without a number")
+                    self.assertEqual(self.read(file, 1)[0][0], 5)
+                else:
+                    self.assertEqual(first[0], "id: 5", lines)
+                raw.close()
+
     def test_many_listeners_hear_everything_while_one_does_not_listen(self):
         with Service() as service:
             deaf, _ = self.open(service, b"Last-Event-ID: 0\r\n")

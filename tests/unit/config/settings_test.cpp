@@ -49,7 +49,8 @@ printers:
       poll_min: 400 us, poll_max: 1 s, connect_timeout: 1 s, reply_timeout: 500 ms, watch_interval: 1 min,
       queue: {autostart: true, chain: stop}}
 folders:
-  f: {path: /d, layout: a, printer: p, pattern: "*.csv", autostart: true, watch: poll, settle: done-companion, poll_interval: 1 h}
+  f: {path: /d, layout: a, printer: p, pattern: "*.csv", autostart: true, watch: poll, settle: done-companion, poll_interval: 1 h,
+      grown_files: print}
 )",
                                          "/etc/f.yaml", {});
     ASSERT_TRUE(settings) << testing::PrintToString(lines_of(settings.error()));
@@ -81,6 +82,7 @@ folders:
     EXPECT_EQ(folder.watch, Watch::poll);
     EXPECT_EQ(folder.settle, Settle::done_companion);
     EXPECT_EQ(folder.poll_interval, 1h);
+    EXPECT_EQ(folder.grown_files, GrownFiles::print);
 }
 
 TEST(SettingsFile, shouldTellAllProblemsInTheOrderOfTheFile) {
