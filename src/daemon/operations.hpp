@@ -122,7 +122,9 @@ struct PrinterView {
     PrinterFigures figures;
     std::vector<std::string> warnings; ///< one line each: what and what to do
     std::int64_t heard_ns = 0;         ///< wall time of the last frame; 0 = never
-    bool held = false; ///< an operator has stopped it: nothing starts by itself until somebody starts a job
+    /// An operator has stopped it, or a job waited there before the service was started: nothing starts by itself until
+    /// somebody starts a job.
+    bool held = false;
 
     /// Not the one that jobs may start on.
     [[nodiscard]] bool other_machine() const {

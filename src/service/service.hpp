@@ -126,6 +126,7 @@ private:
 
     Service(ServiceOptions options, spool::Spool spool);
     [[nodiscard]] Result<void> recover();
+    [[nodiscard]] Result<Line::Past> past_of(const config::PrinterSettings& printer);
     void open_lines();
     void open_folders();
 
