@@ -50,7 +50,8 @@ Result<void> Line::start(spool::JobId job, StartedBy who) {
     {
         const std::lock_guard lock{mutex_};
         if (held_ && who == StartedBy::itself) {
-            return Failure{FailureKind::stopped, "nothing starts by itself on printer " + printer_ + " until somebody starts a job"};
+            return Failure{FailureKind::stopped,
+                           "nothing starts by itself on printer " + printer_ + " until somebody starts a job"};
         }
         if (active_ || closing_) {
             return Failure{FailureKind::stopped,
