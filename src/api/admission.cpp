@@ -180,6 +180,7 @@ Checked<Admitted> check(const Header& header, const Found& found, std::string_vi
     admitted.request.role = identity->role;
     admitted.request.over_unix_socket = peer.unix_socket;
     admitted.request.parameter = found.parameter;
+    admitted.request.what = found.what;
     if (!accepts(header.field("accept"), found.route->produces)) {
         return Problem{ProblemType::not_acceptable, "you do not accept " + media_type_of(found.route->produces),
                        "there is no other representation: accept it, or leave Accept out"};

@@ -18,6 +18,7 @@ std::string request_hash(const Admitted& admitted, const spool::Sha256Digest& bo
     add(to_string(admitted.route->method));
     add(admitted.route->path);
     add(admitted.request.parameter);
+    add(admitted.request.what);
     for (const auto& [name, value] : admitted.request.query.all()) {
         add(name);
         add(value);

@@ -38,6 +38,7 @@ struct Request {
     Role role = Role::anyone;
     bool over_unix_socket = false;
     std::string parameter; ///< what stands for `{…}` in the route's path, decoded; empty = it has none
+    std::string what;      ///< what stands for a second one
     Query query;
     std::string body;                            ///< JSON; empty = none
     std::optional<std::filesystem::path> upload; ///< the body as a file

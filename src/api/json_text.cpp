@@ -193,6 +193,19 @@ bool BodyReader::required_flag(std::string_view member) {
     return value.value_or(false);
 }
 
+Json BodyReader::rest() {
+    Json rest = Json::object();
+    for (const auto& [member, value] : object_.items()) {
+        if (std::find(known_.begin(), known_.end(), member) == known_.end()) {
+            rest[member] = value;
+        }
+    }
+    for (const auto& [member, value] : rest.items()) {
+        known_.push_back(member);
+    }
+    return rest;
+}
+
 Checked<void> BodyReader::finish() const {
     const auto refused = [](std::string detail, std::string advice) {
         return Problem{ProblemType::not_valid, std::move(detail), std::move(advice)};

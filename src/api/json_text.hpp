@@ -42,6 +42,9 @@ public:
     [[nodiscard]] std::int64_t required_number(std::string_view member, std::int64_t least, std::int64_t most);
     [[nodiscard]] bool required_flag(std::string_view member);
 
+    /// The members that were not asked for, which are asked for by this.
+    [[nodiscard]] Json rest();
+
     /// ProblemType::not_valid if a member was of another type, out of range, missing, or never asked for.
     [[nodiscard]] Checked<void> finish() const;
 

@@ -1,6 +1,7 @@
 #include "api/answers.hpp"
 #include "api/handlers.hpp"
 #include "api/views.hpp"
+#include "printer/tasks.hpp"
 
 namespace linefeed::api::handlers {
 
@@ -43,6 +44,13 @@ Outcome start_named(const Request& request, spool::JobId id, Services& services)
         return job_problem(started.error(), id, services);
     }
     return start_begun(id);
+}
+
+/// JSON that the service's core has made.
+Answer text_answer(std::string json) {
+    Answer answer;
+    answer.body = std::move(json);
+    return answer;
 }
 
 } // namespace
@@ -130,6 +138,33 @@ Outcome accept_printer(const Request& request, Services& services) {
     }
     return printer_done(request, services.operations.accept_printer(request.caller, request.parameter, serial_number),
                         services);
+}
+
+Outcome inspect(const Request& request, Services& services) {
+    Json arguments = Json::object();
+    if (const printer::Task* const task = printer::find_task(request.what)) {
+        auto typed = printer::Arguments::from_texts(task->arguments, request.query.all());
+        if (!typed) {
+            return to_problem(typed.error());
+        }
+        arguments = typed->json();
+    }
+    const auto seen = services.operations.inspect(request.parameter, request.what, dump(arguments));
+    return seen ? Outcome{text_answer(*seen)} : printer_problem(seen.error(), request.parameter, services);
+}
+
+Outcome command(const Request& request, Services& services) {
+    auto body = BodyReader::parse(request.body);
+    if (!body) {
+        return body.error();
+    }
+    const std::string what = body->required_text("what");
+    const Json arguments = body->rest();
+    if (const auto right = body->finish(); !right) {
+        return right.error();
+    }
+    const auto done = services.operations.command(request.caller, request.parameter, what, dump(arguments));
+    return done ? Outcome{text_answer(*done)} : printer_problem(done.error(), request.parameter, services);
 }
 
 Outcome suspend(const Request& request, Services& services) {

@@ -47,15 +47,18 @@ enum class Kind {
     stream, ///< server-sent events, written by the connection
 };
 
+/// Names of the parameters that a route takes; "" = no more.
+using RouteQuery = std::array<std::string_view, 5>;
+
 struct Route {
     Method method = Method::get;
-    std::string_view path; ///< with at most one `{…}`, a whole segment
+    std::string_view path; ///< with up to two `{…}`, each a whole segment
     Role role = Role::viewer;
     Lane lane = Lane::query;
     Key key = Key::none;
     Body body = Body::none;
     std::string_view produces = media::json;
-    std::array<std::string_view, 5> query{};                                 ///< names of its parameters; "" = no more
+    RouteQuery query{};                                                      ///< names of its parameters; "" = no more
     Outcome (*handle)(const Request& request, Services& services) = nullptr; ///< nullptr: Kind::stream
     [[nodiscard]] Kind kind() const { return handle == nullptr ? Kind::stream : Kind::answer; }
     [[nodiscard]] bool takes(std::string_view parameter) const;
@@ -66,7 +69,8 @@ struct Route {
 /// Where a path leads.
 struct Found {
     const Route* route = nullptr; ///< nullptr: not with this method, or nothing is there
-    std::string parameter;        ///< for `{…}`, decoded
+    std::string parameter;        ///< for the first `{…}`, decoded
+    std::string what;             ///< for the second one
     std::string allow;            ///< the methods that the path has, e.g. "GET, HEAD, POST"; empty = nothing is there
 };
 

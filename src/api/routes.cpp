@@ -2,18 +2,19 @@
 #include "api/route.hpp"
 
 #include <algorithm>
+#include <vector>
 
 namespace linefeed::api {
 
 namespace {
 
-constexpr Route get(std::string_view path, Role role, Lane lane, decltype(Route::handle) handle,
-                    std::array<std::string_view, 5> query = {}, std::string_view produces = media::json) {
+constexpr Route get(std::string_view path, Role role, Lane lane, decltype(Route::handle) handle, RouteQuery query = {},
+                    std::string_view produces = media::json) {
     return {Method::get, path, role, lane, Key::none, Body::none, produces, query, handle};
 }
 
 constexpr Route post(std::string_view path, Lane lane, Key key, Body body, decltype(Route::handle) handle,
-                     std::array<std::string_view, 5> query = {}) {
+                     RouteQuery query = {}) {
     return {Method::post, path, Role::operator_, lane, key, body, media::json, query, handle};
 }
 
@@ -32,6 +33,9 @@ constexpr std::array table{
     get("/api/v1/printers/{printer}", Role::viewer, Lane::query, handlers::printer),
     get("/api/v1/printers/{printer}/frames", Role::viewer, Lane::query, handlers::frames, {"error"}),
     post("/api/v1/printers/{printer}/preflight", Lane::slow, Key::accepted, Body::none, handlers::preflight),
+    get("/api/v1/printers/{printer}/inspect/{what}", Role::viewer, Lane::slow, handlers::inspect,
+        {"type", "code", "argument"}),
+    post("/api/v1/printers/{printer}/command", Lane::slow, Key::accepted, Body::json, handlers::command),
     post("/api/v1/printers/{printer}/start", Lane::change, Key::required, Body::optional_json, handlers::start_printer),
     post("/api/v1/printers/{printer}/stop", Lane::stop, Key::accepted, Body::none, handlers::stop_printer),
     post("/api/v1/printers/{printer}/acknowledge", Lane::change, Key::accepted, Body::json, handlers::acknowledge),
@@ -56,18 +60,32 @@ constexpr std::array table{
     get("/api/v1/events/stream", Role::viewer, Lane::query, nullptr, {"after"}, media::events),
 };
 
-/// Whether `path` is `pattern`; what stands for `{…}` goes to `parameter`, still encoded.
-bool matches(std::string_view pattern, std::string_view path, std::string_view& parameter) {
-    const std::size_t open = pattern.find('{');
-    if (open == std::string_view::npos) {
-        return pattern == path;
+/// Takes the first segment, with the `/` before it, from the front of `path`.
+std::string_view take_segment(std::string_view& path) {
+    const std::string_view segment = path.substr(0, path.find('/', 1));
+    path.remove_prefix(segment.size());
+    return segment;
+}
+
+/// What stands for each `{…}` of `pattern` in `path`, decoded; std::nullopt if the path is another one.
+std::optional<std::vector<std::string>> match(std::string_view pattern, std::string_view path) {
+    std::vector<std::string> parameters;
+    while (!pattern.empty() && !path.empty()) {
+        const std::string_view wanted = take_segment(pattern);
+        const std::string_view segment = take_segment(path);
+        if (!wanted.starts_with("/{")) {
+            if (wanted != segment) {
+                return std::nullopt;
+            }
+            continue;
+        }
+        auto decoded = percent_decoded(segment.substr(1), false);
+        if (!decoded || decoded->empty()) {
+            return std::nullopt;
+        }
+        parameters.push_back(*std::move(decoded));
     }
-    const std::string_view tail = pattern.substr(pattern.find('}') + 1);
-    if (path.size() <= open + tail.size() || !path.starts_with(pattern.substr(0, open)) || !path.ends_with(tail)) {
-        return false;
-    }
-    parameter = path.substr(open, path.size() - open - tail.size());
-    return parameter.find('/') == std::string_view::npos;
+    return pattern.empty() && path.empty() ? std::optional{std::move(parameters)} : std::nullopt;
 }
 
 } // namespace
@@ -87,19 +105,16 @@ std::span<const Route> routes() {
 Found find_route(std::optional<Method> method, std::string_view path) {
     Found found;
     for (const Route& route : table) {
-        std::string_view encoded;
-        if (!matches(route.path, path, encoded)) {
-            continue;
-        }
-        const auto decoded = percent_decoded(encoded, false);
-        if (!decoded) {
+        const auto parameters = match(route.path, path);
+        if (!parameters) {
             continue;
         }
         found.allow += found.allow.empty() ? "" : ", ";
         found.allow += route.method == Method::get ? "GET, HEAD" : "POST";
         if (route.method == method) {
             found.route = &route;
-            found.parameter = *decoded;
+            found.parameter = parameters->empty() ? std::string{} : parameters->front();
+            found.what = parameters->size() < 2 ? std::string{} : parameters->back();
         }
     }
     return found;

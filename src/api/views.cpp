@@ -130,7 +130,8 @@ Json to_json(const daemon::PrinterView& printer) {
 }
 
 Json to_json(const daemon::FrameView& frame) {
-    return {{"time", rfc3339(frame.time_ns)},
+    return {{"id", frame.id},
+            {"time", rfc3339(frame.time_ns)},
             {"time_ns", frame.time_ns},
             {"direction", frame.sent ? "sent" : "received"},
             {"text", visible_ascii(frame.bytes)},

@@ -4,6 +4,7 @@
 
 #include "api/client.hpp"
 #include "base/failure.hpp"
+#include "printer/json.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -15,10 +16,7 @@ namespace linefeed::client {
 
 using api::Json;
 
-/// `json` as a result. It converts to anything, so that Result cannot tell a value from a failure by itself.
-[[nodiscard]] inline Result<Json> json_result(Json json) {
-    return Result<Json>{boost::system::in_place_value, std::move(json)};
-}
+using printer::json_result;
 
 /// Null if it is not there.
 [[nodiscard]] const Json& member(const Json& object, std::string_view name);

@@ -27,6 +27,16 @@ Result<ExitCode> show_printer(Service& service, const PrinterOptions& options) {
     return ExitCode::done;
 }
 
+/// The error that the printer shows now.
+Result<std::int64_t> shown_error(Service& service, const PrinterOptions& options) {
+    const auto status = service.get(printer_path(options.printer, "/inspect/status"));
+    if (!status) {
+        return status.error();
+    }
+    const auto code = whole(member(*status, "error"), "code");
+    return code ? Result<std::int64_t>{*code} : Failure{FailureKind::stopped, "the printer shows no error"};
+}
+
 Result<ExitCode> change(Service& service, const PrinterOptions& options, std::string_view what, const Json& body) {
     const auto changed = service.post(printer_path(options.printer, what), body);
     if (!changed) {
@@ -96,9 +106,13 @@ ExitCode run_frames(const FramesOptions& options) {
 
 ExitCode run_acknowledge(const AcknowledgeOptions& options) {
     return run_with_service(options.printer.common, [&](Service& service) -> Result<ExitCode> {
-        auto done = change(service, options.printer, "/acknowledge", {{"error", options.error}});
+        const auto error = options.error ? Result<std::int64_t>{*options.error} : shown_error(service, options.printer);
+        if (!error) {
+            return error.error();
+        }
+        auto done = change(service, options.printer, "/acknowledge", {{"error", *error}});
         if (done && !options.printer.common.json) {
-            show(options.printer.printer + ": error " + std::to_string(options.error) + " is acknowledged\n");
+            show(options.printer.printer + ": error " + std::to_string(*error) + " is acknowledged\n");
         }
         return done;
     });

@@ -2,15 +2,18 @@
 #pragma once
 
 #include "client/command.hpp"
+#include "client/direct_printer.hpp"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 namespace linefeed::client {
 
 struct PrinterOptions {
     CommonOptions common;
-    std::string printer;
+    std::string printer; ///< its name in the service, or an address
+    DirectOptions direct{};
 };
 
 struct FramesOptions {
@@ -20,7 +23,7 @@ struct FramesOptions {
 
 struct AcknowledgeOptions {
     PrinterOptions printer;
-    std::int64_t error = 0; ///< PrinterError.code
+    std::optional<std::int64_t> error{}; ///< PrinterError.code; absent = the one that the printer shows
 };
 
 struct AcceptOptions {

@@ -113,6 +113,7 @@ std::vector<FrameView> FrameHistory::frames() const {
     views.reserve(entries.size());
     for (const Entry& entry : entries) {
         FrameView& view = views.emplace_back();
+        view.id = entry.place;
         view.time_ns = entry.time_ns + to_wall_ns;
         view.sent = entry.sent;
         view.bytes.assign(entry.text.data(), entry.bytes);

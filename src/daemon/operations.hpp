@@ -150,6 +150,7 @@ struct FrameView {
     std::string bytes;        ///< raw; at most 128 of them; of several records, the first one's; none: no frame
     std::uint32_t size = 0;   ///< of the whole frame with its CR, or of all the records
     RecordRange records{};    ///< not empty: the numbers of the mail records, all of which this entry stands for
+    std::uint64_t id = 0;     ///< its place in the conversation, both ways counted together
 };
 
 struct EventView {
@@ -286,6 +287,11 @@ public:
     /// The last frames each way, oldest first; of the last error if there was one and `error`.
     [[nodiscard]] virtual Result<std::vector<FrameView>> frames(std::string_view printer, bool error) = 0;
 
+    /// What can be seen of the printer itself: carries out the look of this name (printer/tasks.hpp). `arguments` is a
+    /// JSON object, empty = none; so is the answer. Asks the printer, over a connection of its own.
+    [[nodiscard]] virtual Result<std::string> inspect(std::string_view printer, std::string_view what,
+                                                      std::string_view arguments) = 0;
+
     [[nodiscard]] virtual Result<std::vector<JobView>> jobs(const JobFilter& filter) = 0;
     [[nodiscard]] virtual Result<std::optional<JobView>> job(spool::JobId id) = 0;
     [[nodiscard]] virtual Result<DoubtView> doubt(spool::JobId id) = 0;
@@ -341,6 +347,11 @@ public:
     /// `!US`, held until it is taken back, the service ends or nobody has asked again for `hold`.
     [[nodiscard]] virtual Result<void> suspend_panel(const Caller& caller, std::string_view printer, bool suspend,
                                                      Duration hold) = 0;
+    /// Does something to the printer: carries out the change of this name (printer/tasks.hpp), as inspect() a look.
+    /// FailureKind::stopped: not while a job is on the line, for what disturbs the feeding or loses what is in the
+    /// printer; and nothing that empties the FIFO while the fate of records in it is open.
+    [[nodiscard]] virtual Result<std::string> command(const Caller& caller, std::string_view printer,
+                                                      std::string_view what, std::string_view arguments) = 0;
     /// As SIGHUP: what has changed, one line each.
     [[nodiscard]] virtual Result<std::vector<std::string>> reload(const Caller& caller) = 0;
 

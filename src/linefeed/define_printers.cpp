@@ -1,5 +1,7 @@
 #include "client/printer_commands.hpp"
+#include "client/task_command.hpp"
 #include "linefeed/definitions.hpp"
+#include "printer/tasks.hpp"
 
 #include <memory>
 
@@ -14,16 +16,32 @@ void add_printers(CLI::App& app, Commands& commands) {
     commands.push_back({&printers, [options] { return client::run_printers(*options); }});
 }
 
+/// What the service alone can tell.
+cli::ExitCode of_service_only(const client::PrinterOptions& options, const std::function<cli::ExitCode()>& run) {
+    return client::is_address(options.printer)
+               ? usage_error("that is what the service knows: say a printer's name instead of " + options.printer)
+               : run();
+}
+
 /// `linefeed printer NAME …`: what is done with the one printer. Options may stand in front of the action or behind it.
 void add_printer(CLI::App& app, Commands& commands) {
     const auto options = std::make_shared<client::PrinterOptions>();
     const auto error = std::make_shared<bool>(false);
-    const auto code = std::make_shared<std::int64_t>(0);
+    const auto code = std::make_shared<std::optional<std::int64_t>>();
     const auto serial_number = std::make_shared<std::string>();
     const auto hold_s = std::make_shared<std::int64_t>(60);
     CLI::App& printer = *app.add_subcommand("printer", "Show one printer, or do something with it");
-    printer.add_option("PRINTER", options->printer, "Its name in the configuration")->required();
+    printer
+        .add_option("PRINTER", options->printer,
+                    "Its name in the configuration, or its address (tcp://HOST:PORT) to ask it without the service")
+        ->required();
     add_common(printer, options->common);
+    constexpr const char* group = "With an address";
+    printer.add_option("--profile", options->direct.profile, "Firmware profile")->capture_default_str()->group(group);
+    printer
+        .add_option("--errors", options->direct.errors,
+                    "Table of error numbers; default: /etc/linefeed/errors.yaml, if it is there")
+        ->group(group);
     printer.require_subcommand(0, 1);
 
     CLI::App& preflight = *printer.add_subcommand("preflight", "Ask the printer whether a job could start");
@@ -31,8 +49,8 @@ void add_printer(CLI::App& app, Commands& commands) {
     CLI::App& frames = *printer.add_subcommand("frames", "Show the last frames each way");
     frames.add_flag("--error", *error, "Those before the last error, if there was one");
     CLI::App& acknowledge = *printer.add_subcommand("acknowledge", "Acknowledge the error that the printer shows");
-    acknowledge.add_option("ERROR", *code, "Its number, see linefeed printer PRINTER; another one is left alone")
-        ->required()
+    acknowledge.alias("ack");
+    acknowledge.add_option("ERROR", *code, "Its number; another one is left alone. Default: the one that is shown now")
         ->check(CLI::Range(1, 33'554'431));
     CLI::App& accept =
         *printer.add_subcommand("accept", "The printer was exchanged: accept the machine that answers now");
@@ -48,13 +66,41 @@ void add_printer(CLI::App& app, Commands& commands) {
         action->fallthrough();
     }
 
-    commands.push_back({&preflight, [options] { return client::run_preflight(*options); }});
-    commands.push_back({&frames, [options, error] { return client::run_frames({*options, *error}); }});
-    commands.push_back({&acknowledge, [options, code] { return client::run_acknowledge({*options, *code}); }});
-    commands.push_back({&accept, [options, serial_number] { return client::run_accept({*options, *serial_number}); }});
-    commands.push_back({&suspend, [options, hold_s] { return client::run_suspend({*options, true, *hold_s}); }});
-    commands.push_back({&release, [options] { return client::run_suspend({*options, false}); }});
-    commands.push_back({&printer, [options] { return client::run_printer(*options); }});
+    commands.push_back(
+        {&preflight, [options] { return of_service_only(*options, [&] { return client::run_preflight(*options); }); }});
+    commands.push_back({&frames, [options, error] {
+                            return of_service_only(*options, [&] { return client::run_frames({*options, *error}); });
+                        }});
+    commands.push_back({&acknowledge, [options, code] {
+                            if (!client::is_address(options->printer)) {
+                                return client::run_acknowledge({*options, *code});
+                            }
+                            client::TaskOptions task{*options, printer::find_task("acknowledge"), {}, true};
+                            if (*code) {
+                                task.arguments.emplace_back("error", std::to_string(**code));
+                            }
+                            return client::run_task(task);
+                        }});
+    commands.push_back(
+        {&accept, [options, serial_number] {
+             return of_service_only(*options, [&] { return client::run_accept({*options, *serial_number}); });
+         }});
+    commands.push_back({&suspend, [options, hold_s] {
+                            const client::SuspendOptions all{*options, true, *hold_s};
+                            return client::is_address(options->printer) ? client::run_direct_suspend(all)
+                                                                        : client::run_suspend(all);
+                        }});
+    commands.push_back({&release, [options] {
+                            return client::is_address(options->printer)
+                                       ? client::run_task({*options, printer::find_task("release"), {}, true})
+                                       : client::run_suspend({*options, false});
+                        }});
+    define_tasks(printer, commands, options);
+    commands.push_back({&printer, [options] {
+                            return client::is_address(options->printer)
+                                       ? client::run_task({*options, printer::find_task("status"), {}, false})
+                                       : client::run_printer(*options);
+                        }});
 }
 
 void add_stop(CLI::App& app, Commands& commands) {

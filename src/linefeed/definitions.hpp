@@ -4,6 +4,7 @@
 
 #include "cli/exit_code.hpp"
 #include "client/command.hpp"
+#include "client/printer_commands.hpp"
 #include "daemon/operator_word.hpp"
 #include "intake/layout.hpp"
 
@@ -11,6 +12,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -33,6 +35,8 @@ void define_jobs(CLI::App& app, Commands& commands);
 void define_job_changes(CLI::App& app, Commands& commands);
 /// start, resume, settle
 void define_starts(CLI::App& app, Commands& commands);
+/// What `linefeed printer P` has: every task, monitor, record, replay.
+void define_tasks(CLI::App& printer, Commands& commands, const std::shared_ptr<client::PrinterOptions>& options);
 /// printers, printer, stop
 void define_printers(CLI::App& app, Commands& commands);
 /// status, watch, events, folders, audit, reload

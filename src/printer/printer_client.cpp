@@ -12,29 +12,6 @@ namespace linefeed::printer {
 namespace asio = boost::asio;
 using boost::system::error_code;
 using protocol::Message;
-using protocol::Parameter;
-
-namespace {
-
-/// Whether it answers `?XX`.
-bool answers(const Message& message, Parameter what) {
-    switch (what) {
-    case Parameter::RS:
-        return std::holds_alternative<protocol::MachineStatus>(message);
-    case Parameter::SM:
-        return std::holds_alternative<protocol::MailStatus>(message);
-    case Parameter::CC:
-        return std::holds_alternative<protocol::Counters>(message);
-    case Parameter::VS:
-        return std::holds_alternative<protocol::VersionInfo>(message);
-    case Parameter::JL:
-        return std::holds_alternative<protocol::JobName>(message);
-    default:
-        return false;
-    }
-}
-
-} // namespace
 
 PrinterClient::PrinterClient(const ClientSettings& settings)
     : settings_(settings)
@@ -93,36 +70,54 @@ bool PrinterClient::send(protocol::Action action) {
     return write(bytes);
 }
 
-std::optional<Message> PrinterClient::ask_for(Parameter what) {
-    std::string inquiry;
-    protocol::append_inquiry(inquiry, what);
-    if (!write(inquiry)) {
-        return std::nullopt;
+std::string PrinterClient::frame_of(const Message& message) const {
+    std::string bytes;
+    protocol::append_any_message(bytes, message, settings_.escapes);
+    return bytes;
+}
+
+bool PrinterClient::converse(const std::string& bytes, const Listener& listener) {
+    return converse(bytes, listener, settings_.reply_timeout);
+}
+
+bool PrinterClient::converse(const std::string& bytes, const Listener& listener, Duration reply_timeout) {
+    if (!bytes.empty() && !write(bytes)) {
+        return false;
     }
-    const auto deadline = Clock::now() + settings_.reply_timeout;
+    auto deadline = Clock::now() + reply_timeout;
     while (open_ && Clock::now() < deadline) {
-        std::string_view bytes = read(deadline);
-        std::optional<Message> answer;
-        while (!bytes.empty() && !answer) {
-            auto message = next_message(bytes);
-            if (message && answers(*message, what)) {
-                answer = std::move(message);
-            }
+        bool prolonged = false;
+        if (hear(read(deadline), listener, prolonged)) {
+            return true;
         }
-        while (!bytes.empty()) { // what came behind it
-            static_cast<void>(next_message(bytes));
-        }
-        if (answer) {
-            return answer;
+        if (prolonged) {
+            deadline = Clock::now() + reply_timeout;
         }
     }
-    return std::nullopt;
+    return false;
+}
+
+/// What stands behind the answer is decoded, but nobody is listening any more.
+bool PrinterClient::hear(std::string_view bytes, const Listener& listener, bool& prolonged) {
+    bool done = false;
+    for (auto result = decoder_.next(bytes); result.index() != 0; result = decoder_.next(bytes)) {
+        if (const auto* const damage = std::get_if<protocol::FrameError>(&result)) {
+            oddities_.damaged_bytes += damage->bytes;
+        } else if (const auto* const frame = std::get_if<protocol::Frame>(&result)) {
+            const Message message = message_of(*frame);
+            const Heard heard = done ? Heard::ignored : listener(message, frame->raw);
+            done = done || heard == Heard::done;
+            prolonged = prolonged || heard == Heard::more;
+        }
+    }
+    return done;
 }
 
 bool PrinterClient::write(const std::string& bytes) {
     if (!open_) {
         return false;
     }
+    observer_(true, bytes);
     error_code result = asio::error::would_block;
     asio::async_write(socket_, asio::buffer(bytes),
                       [&result](const error_code& error, std::size_t) { result = error; });
@@ -158,23 +153,16 @@ std::string_view PrinterClient::read(Clock::time_point deadline) {
     }
     const std::string_view bytes{buffer_.data(), size};
     note_filling(bytes);
+    if (!bytes.empty()) {
+        observer_(false, bytes);
+    }
     return bytes;
 }
 
-/// The next frame in `bytes` that is not damaged, if there is one; takes bytes from the front.
-std::optional<Message> PrinterClient::next_message(std::string_view& bytes) {
-    const protocol::DecodeResult result = decoder_.next(bytes);
-    if (const auto* damage = std::get_if<protocol::FrameError>(&result)) {
-        oddities_.damaged_bytes += damage->bytes;
-        return std::nullopt;
-    }
-    const auto* const frame = std::get_if<protocol::Frame>(&result);
-    if (frame == nullptr) {
-        return std::nullopt;
-    }
-    oddities_.lengths = oddities_.lengths || frame->has_length;
-    Message message = protocol::parse_message(*frame, settings_.escapes);
-    if (const auto* malformed = std::get_if<protocol::MalformedMessage>(&message)) {
+Message PrinterClient::message_of(const protocol::Frame& frame) {
+    oddities_.lengths = oddities_.lengths || frame.has_length;
+    Message message = protocol::parse_message(frame, settings_.escapes);
+    if (const auto* const malformed = std::get_if<protocol::MalformedMessage>(&message)) {
         oddities_.damaged_bytes += malformed->payload.size();
     }
     oddities_.echoes = oddities_.echoes || std::holds_alternative<protocol::ActionMessage>(message);

@@ -14,6 +14,7 @@
 #include <array>
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -40,25 +41,53 @@ struct ConversationOddities {
     friend bool operator==(const ConversationOddities&, const ConversationOddities&) = default;
 };
 
-/// Flow: connect(), then ask() and send() as wanted; the connection closes with it. One thread.
+/// Flow: connect(), then ask(), send() and converse() as wanted; the connection closes with it. One thread.
 class PrinterClient {
 public:
+    /// What a listener makes of a frame.
+    enum class Heard {
+        ignored, ///< belongs to something else
+        more,    ///< part of the answer: the reply time-out begins anew
+        done,    ///< the answer is complete
+    };
+    /// `raw` is the frame from `^` up to and without CR.
+    using Listener = std::function<Heard(const protocol::Message& message, std::string_view raw)>;
+    /// Whole bytes as they go and come, whatever they are.
+    using Observer = std::function<void(bool sent, std::string_view bytes)>;
+
     /// FailureKind::unreachable if no endpoint takes the connection.
     [[nodiscard]] static Result<std::unique_ptr<PrinterClient>> connect(const ClientSettings& settings);
     ~PrinterClient();
     PrinterClient(const PrinterClient&) = delete;
     PrinterClient& operator=(const PrinterClient&) = delete;
 
-    /// The answer: its type is that of `what`: RS, SM, CC, VS or JL. Absent: none came within the reply time-out, or
-    /// the connection broke.
+    /// The answer to `?XX`, or to `?XX argument`, which is one frame of the type `Answer`. Absent: none came within the
+    /// reply time-out, or the connection broke.
     template <typename Answer>
-    [[nodiscard]] std::optional<Answer> ask(protocol::Parameter what) {
-        const auto message = ask_for(what);
-        const Answer* const answer = message ? std::get_if<Answer>(&*message) : nullptr;
-        return answer == nullptr ? std::nullopt : std::optional{*answer};
+    [[nodiscard]] std::optional<Answer> ask(protocol::Parameter what, std::string argument = {}) {
+        std::optional<Answer> answer;
+        static_cast<void>(converse(frame_of(protocol::InquiryMessage{what, std::move(argument)}),
+                                   [&answer](const protocol::Message& message, std::string_view /*raw*/) {
+                                       if (const auto* const wanted = std::get_if<Answer>(&message)) {
+                                           answer = *wanted;
+                                       }
+                                       return answer ? Heard::done : Heard::ignored;
+                                   }));
+        return answer;
     }
     /// Hands a command to the kernel. False if the connection is broken.
     bool send(protocol::Action action);
+    bool send(const protocol::Message& message) { return write(frame_of(message)); }
+    /// Sends `bytes`, which may be none, and listens until the listener is done. False: the reply time-out is over, or
+    /// the connection broke; what was heard until then counts.
+    bool converse(const std::string& bytes, const Listener& listener);
+    /// The same with another time-out than the connection's own.
+    bool converse(const std::string& bytes, const Listener& listener, Duration reply_timeout);
+    /// The frame with its CR, escaped as this printer's firmware wants it.
+    [[nodiscard]] std::string frame_of(const protocol::Message& message) const;
+    /// Hears from now on of everything that is sent and that comes.
+    void observe(Observer observer) { observer_ = std::move(observer); }
+    [[nodiscard]] const ClientSettings& settings() const { return settings_; }
     /// The other side has not closed.
     [[nodiscard]] bool open() const { return open_; }
     [[nodiscard]] const ConversationOddities& oddities() const { return oddities_; }
@@ -68,10 +97,11 @@ private:
 
     explicit PrinterClient(const ClientSettings& settings);
     [[nodiscard]] std::string connect_to(const boost::asio::ip::tcp::endpoint& endpoint);
-    [[nodiscard]] std::optional<protocol::Message> ask_for(protocol::Parameter what);
     [[nodiscard]] bool write(const std::string& bytes);
     [[nodiscard]] std::string_view read(Clock::time_point deadline);
-    [[nodiscard]] std::optional<protocol::Message> next_message(std::string_view& bytes);
+    /// What stands in one read; true when the listener is done.
+    [[nodiscard]] bool hear(std::string_view bytes, const Listener& listener, bool& prolonged);
+    [[nodiscard]] protocol::Message message_of(const protocol::Frame& frame);
     void note_filling(std::string_view bytes);
 
     ClientSettings settings_;
@@ -79,6 +109,7 @@ private:
     boost::asio::ip::tcp::socket socket_{context_};
     protocol::FrameDecoder decoder_;
     ConversationOddities oddities_;
+    Observer observer_ = [](bool, std::string_view) {};
     bool open_ = false;
     char last_byte_ = '\0';
     std::array<char, 4096> buffer_{};

@@ -30,10 +30,13 @@ Result<PrinterError> acknowledge(const ClientSettings& settings, std::uint32_t e
     if (!connected) {
         return connected.error();
     }
-    PrinterClient& printer = **connected;
+    return acknowledge(**connected, error);
+}
+
+Result<PrinterError> acknowledge(PrinterClient& printer, std::uint32_t error) {
     auto machine = printer.ask<MachineStatus>(Parameter::RS);
     if (!machine) {
-        return no_answer(settings);
+        return no_answer(printer.settings());
     }
     if (!is(machine->error, error)) {
         return Failure{FailureKind::stopped, "error " + std::to_string(error) +
@@ -50,7 +53,7 @@ Result<PrinterError> acknowledge(const ClientSettings& settings, std::uint32_t e
         std::this_thread::sleep_for(look_again);
         machine = printer.ask<MachineStatus>(Parameter::RS);
     }
-    return machine ? Result<PrinterError>{machine->error} : Result<PrinterError>{no_answer(settings)};
+    return machine ? Result<PrinterError>{machine->error} : Result<PrinterError>{no_answer(printer.settings())};
 }
 
 PanelHold::PanelHold(const ClientSettings& settings, Duration repeat)

@@ -21,6 +21,8 @@ namespace linefeed::printer {
 /// blind one. The error that it shows then, if another stood behind it. Blocks. FailureKind::stopped: it shows
 /// another error, or none, or this one still after `!EQ`; ::unreachable: it does not answer.
 [[nodiscard]] Result<protocol::PrinterError> acknowledge(const ClientSettings& settings, std::uint32_t error);
+/// The same on a connection that is there.
+[[nodiscard]] Result<protocol::PrinterError> acknowledge(PrinterClient& printer, std::uint32_t error);
 
 /// `!US`, which blocks the printer's panel for 10 s, repeated on a connection of its own as long as it is wanted. `!UR`
 /// ends it, whatever the reason: taken back, time over, service ending; where the connection is lost meanwhile on

@@ -113,6 +113,10 @@ void Line::serve() {
         if (!active_ && closing_) {
             return;
         }
+        if (active_ && reserved_ > 0 && !closing_) {
+            changed_.wait(lock);
+            continue;
+        }
         if (!active_) {
             const auto at = next_look();
             if (!at) {

@@ -10,6 +10,7 @@
 #include "daemon/preflight.hpp"
 #include "daemon/printer_watch.hpp"
 #include "printer/printer_commands.hpp"
+#include "printer/task.hpp"
 #include "service/event_log.hpp"
 #include "service/spool_access.hpp"
 
@@ -93,6 +94,12 @@ public:
     [[nodiscard]] Result<void> acknowledge(std::uint32_t error);
     /// See daemon::Operations::accept_printer().
     [[nodiscard]] Result<void> accept(const std::string& serial_number);
+    /// Carries out one of printer::tasks(); `arguments` and the answer are JSON. What disturbs the feeding or loses
+    /// what is in the printer is refused while a job is on the line, and a job that is started meanwhile waits for the
+    /// end of it: FailureKind::stopped. `check` says whether what empties the FIFO may be done, asked once no job can
+    /// start.
+    [[nodiscard]] Result<std::string> carry_out(const printer::Task& task, std::string_view arguments,
+                                                const std::function<Result<void>()>& check);
     /// Holds the panel for so long from now, or releases it.
     [[nodiscard]] Result<void> hold_panel(std::optional<Duration> time);
     [[nodiscard]] const std::string& printer() const { return printer_; }
@@ -108,6 +115,7 @@ private:
                std::optional<RecordNumber> record = {});
 
     // line_printer.cpp: the printer besides printing
+    [[nodiscard]] Result<void> reserve();
     [[nodiscard]] Result<printer::ClientSettings> client_settings() const;
     [[nodiscard]] std::vector<daemon::Finding> look_at_printer(const printer::ClientSettings& client,
                                                                bool may_be_printing);
@@ -143,6 +151,7 @@ private:
     std::uint64_t orders_ = 0;           ///< so many so far
     bool begun_ = false;                 ///< the thread has taken the order
     bool checking_ = false;              ///< preflight
+    std::uint32_t reserved_ = 0; ///< for so many commands that no job may meet: the next one waits for their end
     bool stop_requested_ = false;
     bool held_ = false; ///< stopped by an operator
     bool closing_ = false;

@@ -2,6 +2,7 @@
 // held. Each is a short conversation on a connection of its own.
 #include "daemon/events.hpp"
 #include "daemon/wall_clock.hpp"
+#include "printer/tasks.hpp"
 #include "service/line.hpp"
 
 #include <algorithm>
@@ -67,6 +68,62 @@ Result<void> Line::acknowledge(std::uint32_t error) {
     return {};
 }
 
+Result<std::string> Line::carry_out(const printer::Task& task, std::string_view arguments,
+                                    const std::function<Result<void>()>& check) {
+    auto read = printer::Arguments::parse(task.arguments, arguments);
+    if (!read) {
+        return read.error();
+    }
+    const auto danger = printer::danger_of(task, *read);
+    const auto empties = printer::empties_fifo(task, *read);
+    if (!danger || !empties) {
+        return danger ? empties.error() : danger.error();
+    }
+    const auto client = client_settings();
+    if (!client) {
+        return client.error();
+    }
+    std::shared_ptr<void> reservation;
+    if (*danger != printer::Danger::none) {
+        if (auto reserved = reserve(); !reserved) {
+            return reserved.error();
+        }
+        reservation = {this, [](Line* line) {
+                           {
+                               const std::lock_guard lock{line->mutex_};
+                               --line->reserved_;
+                           }
+                           line->changed_.notify_all();
+                       }};
+    }
+    if (*empties) {
+        if (auto checked = check(); !checked) {
+            return checked.error();
+        }
+    }
+    const auto connected = printer::PrinterClient::connect(*client);
+    if (!connected) {
+        return connected.error();
+    }
+    const SharedSettings all = settings();
+    const auto meaning = [&all](const protocol::PrinterError& error) {
+        const config::ErrorEntry* const entry = all->errors.find(error);
+        return entry == nullptr ? printer::ErrorWords{} : printer::ErrorWords{entry->meaning, entry->advice};
+    };
+    return printer::carry_out_as_text(task, **connected, {std::move(*read), meaning});
+}
+
+/// Before a command that no job may meet.
+Result<void> Line::reserve() {
+    const std::lock_guard lock{mutex_};
+    if (active_) {
+        return Failure{FailureKind::stopped, name_of(*active_) + " is on printer " + printer_ +
+                                                 ": stop it first (linefeed stop " + printer_ + ")"};
+    }
+    ++reserved_;
+    return {};
+}
+
 Result<void> Line::accept(const std::string& serial_number) {
     const auto client = client_settings();
     if (!client) {
@@ -119,16 +176,20 @@ void Line::glance() {
     constexpr Duration patience = std::chrono::seconds{1};
     auto client = client_settings();
     const SharedSettings all = settings();
+    const config::PrinterSettings* const own = all->printer(printer_);
+    if (own == nullptr) {
+        return; // it is being taken away
+    }
     const std::unique_lock alone{conversations_, std::try_to_lock};
     std::optional<printer::Look> look;
     if (client && alone) {
         client->connect_timeout = std::min(client->connect_timeout, patience);
         client->reply_timeout = std::min(client->reply_timeout, patience);
         look = printer::look_at(*client);
-    } else if (!client && all->printer(printer_) != nullptr) {
+    } else if (!client) {
         look.emplace().unreachable = client.error().message; // its name cannot be resolved
     }
-    daemon::PrinterWatch::Known known{*all, *all->printer(printer_)};
+    daemon::PrinterWatch::Known known{*all, *own};
     {
         const std::lock_guard lock{mutex_};
         looked_at_ = std::chrono::steady_clock::now();

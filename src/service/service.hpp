@@ -116,6 +116,10 @@ public:
                                               const std::string& serial_number) override;
     [[nodiscard]] Result<void> suspend_panel(const daemon::Caller& caller, std::string_view printer, bool suspend,
                                              Duration hold) override;
+    [[nodiscard]] Result<std::string> inspect(std::string_view printer, std::string_view what,
+                                              std::string_view arguments) override;
+    [[nodiscard]] Result<std::string> command(const daemon::Caller& caller, std::string_view printer,
+                                              std::string_view what, std::string_view arguments) override;
 
     // service_reload.cpp
     [[nodiscard]] Result<std::vector<std::string>> reload(const daemon::Caller& caller) override;
@@ -161,6 +165,9 @@ private:
     };
     [[nodiscard]] Result<Said> said_by(const spool::Job& job, const daemon::OperatorWord& word,
                                        const daemon::Caller& caller);
+
+    /// Whether the fate of records in this printer is open. FailureKind::stopped, naming the job.
+    [[nodiscard]] Result<void> check_fifo_known(const std::string& printer);
 
     // With orders_ held
     [[nodiscard]] Result<void> begin(spool::JobId id, StartedBy who);

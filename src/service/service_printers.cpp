@@ -1,4 +1,6 @@
 // What is asked of a printer besides printing.
+#include "daemon/job_run.hpp"
+#include "printer/tasks.hpp"
 #include "service/service.hpp"
 
 #include <chrono>
@@ -46,6 +48,57 @@ Result<void> Service::suspend_panel(const daemon::Caller& caller, std::string_vi
             return line.error();
         }
         return (*line)->hold_panel(suspend ? std::optional{hold} : std::nullopt);
+    });
+}
+
+Result<std::string> Service::inspect(std::string_view printer, std::string_view what, std::string_view arguments) {
+    const auto line = known_line(printer);
+    if (!line) {
+        return line.error();
+    }
+    const auto task = printer::known_task(what, printer::Task::Kind::look);
+    return task ? (*line)->carry_out(**task, arguments, [] { return Result<void>{}; }) : task.error();
+}
+
+Result<std::string> Service::command(const daemon::Caller& caller, std::string_view printer, std::string_view what,
+                                     std::string_view arguments) {
+    const Act act{"command", "printer " + std::string{printer},
+                  spool::JsonObject{}.add("what", what).add("arguments", arguments)};
+    return audited(caller, act, [&]() -> Result<std::string> {
+        const auto line = known_line(printer);
+        if (!line) {
+            return line.error();
+        }
+        const auto task = printer::known_task(what, printer::Task::Kind::change);
+        if (!task) {
+            return task.error();
+        }
+        return (*line)->carry_out(**task, arguments, [&] { return check_fifo_known((*line)->printer()); });
+    });
+}
+
+Result<void> Service::check_fifo_known(const std::string& printer) {
+    const config::PrinterSettings* const own = settings()->printer(printer);
+    const std::string address = own == nullptr ? std::string{} : link::to_string(own->address);
+    return access_.write([&](spool::Spool& spool) -> Result<void> {
+        const auto open_jobs = spool.jobs_with_open_records();
+        if (!open_jobs) {
+            return open_jobs.error();
+        }
+        for (const spool::JobId id : *open_jobs) {
+            const auto open = daemon::find_open_issue(spool, id);
+            const auto facts = daemon::read_facts(spool, id);
+            if (!open || !facts) {
+                return open ? facts.error() : open.error();
+            }
+            if (facts->printer() == printer || (*open && (*open)->printer == address)) {
+                return Failure{FailureKind::stopped,
+                               "nobody knows yet which records of " + name_of(id) +
+                                   " the printer has printed, and what "
+                                   "it knows would be lost: start or resume that job first, which asks it"};
+            }
+        }
+        return {};
     });
 }
 

@@ -16,11 +16,11 @@ MAY_USE = {
     "config": {"base", "protocol", "feeder", "link"},
     "printer": {"base", "protocol"},
     "daemon": {"base", "protocol", "feeder", "session", "link", "printer", "spool", "intake", "config"},
-    "api": {"base", "protocol", "link", "spool", "config", "daemon"},
+    "api": {"base", "protocol", "link", "printer", "spool", "config", "daemon"},
     "service": {"base", "protocol", "feeder", "session", "link", "printer", "spool", "intake", "config", "daemon"},
     "cli": {"base", "protocol", "feeder", "session", "link", "spool", "intake", "config", "daemon"},
-    "client": {"base", "protocol", "spool", "intake", "config", "daemon", "api", "cli"},
-    "linefeed": {"base", "protocol", "intake", "daemon", "cli", "client"},
+    "client": {"base", "protocol", "link", "printer", "spool", "intake", "config", "daemon", "api", "cli"},
+    "linefeed": {"base", "protocol", "printer", "intake", "daemon", "cli", "client"},
     "linefeedd": {"base", "spool", "config", "daemon", "service", "api", "cli"},
 }
 
@@ -70,5 +70,5 @@ LIBRARY_FOLDERS = {
     r"openssl/.*": {"spool", "api"},
     r"yaml-cpp/.*": {"config"},
     r"spdlog/.*|systemd/.*": {"daemon"},
-    r"nlohmann/.*": {"spool", "simulator", "config", "daemon", "api", "cli", "client"},
+    r"nlohmann/.*": {"spool", "simulator", "printer", "config", "daemon", "api", "cli", "client"},
 }

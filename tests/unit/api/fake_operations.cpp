@@ -400,6 +400,24 @@ Result<void> FakeOperations::acknowledge(const Caller& caller, std::string_view 
     return known ? changed : known;
 }
 
+Result<std::string> FakeOperations::inspect(std::string_view printer, std::string_view what,
+                                            std::string_view arguments) {
+    if (const auto known = check_printer(printer); !known) {
+        return known.error();
+    }
+    return R"({"what":")" + std::string{what} + R"(","arguments":)" + std::string{arguments} + '}';
+}
+
+Result<std::string> FakeOperations::command(const Caller& caller, std::string_view printer, std::string_view what,
+                                            std::string_view arguments) {
+    const auto known = check_printer(printer);
+    const auto changed = change(caller, "command", std::string{printer} + ' ' + std::string{what});
+    if (!known || !changed) {
+        return known ? changed.error() : known.error();
+    }
+    return R"({"what":")" + std::string{what} + R"(","arguments":)" + std::string{arguments} + '}';
+}
+
 Result<void> FakeOperations::accept_printer(const Caller& caller, std::string_view printer,
                                             const std::string& serial_number) {
     const auto known = check_printer(printer);

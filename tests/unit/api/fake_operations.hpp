@@ -72,6 +72,9 @@ public:
                                 const std::string& serial_number) override;
     Result<void> suspend_panel(const daemon::Caller& caller, std::string_view printer, bool suspend,
                                Duration hold) override;
+    Result<std::string> inspect(std::string_view printer, std::string_view what, std::string_view arguments) override;
+    Result<std::string> command(const daemon::Caller& caller, std::string_view printer, std::string_view what,
+                                std::string_view arguments) override;
     Result<std::vector<std::string>> reload(const daemon::Caller& caller) override;
     Result<std::optional<Remembered>> remembered(const daemon::Caller& caller, std::string_view key) override;
     Result<void> remember(const daemon::Caller& caller, std::string_view key, const Remembered& answer) override;

@@ -1,0 +1,69 @@
+#include "client/direct_printer.hpp"
+
+#include "config/load.hpp"
+#include "link/printer_address.hpp"
+#include "protocol/profile.hpp"
+
+#include <fstream>
+#include <iterator>
+
+namespace linefeed::client {
+
+namespace {
+
+/// Where the package puts it.
+constexpr const char* plant_errors = "/etc/linefeed/errors.yaml";
+
+} // namespace
+
+bool is_address(std::string_view printer) {
+    return printer.find("://") != std::string_view::npos;
+}
+
+Result<printer::ClientSettings> direct_settings(const std::string& address, const DirectOptions& options) {
+    const auto parsed = link::parse_printer_address(address);
+    if (!parsed) {
+        return parsed.error();
+    }
+    const auto profile = protocol::profile_by_name(options.profile);
+    if (!profile) {
+        return Failure{FailureKind::usage, "there is no firmware profile \"" + options.profile + '"'};
+    }
+    auto endpoints = link::resolve(*parsed);
+    if (!endpoints) {
+        return endpoints.error();
+    }
+    return printer::ClientSettings{
+        .address = link::to_string(*parsed), .endpoints = std::move(*endpoints), .escapes = profile->escapes};
+}
+
+Result<std::unique_ptr<printer::PrinterClient>> connect_directly(const std::string& address,
+                                                                 const DirectOptions& options) {
+    const auto settings = direct_settings(address, options);
+    return settings ? printer::PrinterClient::connect(*settings) : settings.error();
+}
+
+Result<std::function<printer::ErrorWords(const protocol::PrinterError&)>>
+read_error_words(const DirectOptions& options) {
+    const bool given = !options.errors.empty();
+    const std::filesystem::path file = given ? options.errors : std::filesystem::path{plant_errors};
+    std::ifstream in{file, std::ios::binary};
+    const std::string text{std::istreambuf_iterator<char>{in}, {}};
+    if (!in.is_open() || in.bad()) {
+        if (given) {
+            return Failure{FailureKind::usage, "cannot read " + file.string()};
+        }
+        return [](const protocol::PrinterError&) { return printer::ErrorWords{}; };
+    }
+    auto table = config::parse_error_table(text, file);
+    if (!table) {
+        return Failure{FailureKind::usage, file.string() + " is no table of error numbers: linefeed check-config says "
+                                                           "what is wrong"};
+    }
+    return [table = *std::move(table)](const protocol::PrinterError& error) {
+        const config::ErrorEntry* const entry = table.find(error);
+        return entry == nullptr ? printer::ErrorWords{} : printer::ErrorWords{entry->meaning, entry->advice};
+    };
+}
+
+} // namespace linefeed::client

@@ -1,0 +1,33 @@
+// A printer without the service: for commissioning, `linefeed printer tcp://HOST …`.
+#pragma once
+
+#include "base/failure.hpp"
+#include "printer/printer_client.hpp"
+#include "printer/task.hpp"
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+
+namespace linefeed::client {
+
+struct DirectOptions {
+    std::string profile{"jet3up"}; ///< firmware profile
+    std::filesystem::path errors;  ///< table of error numbers; empty = that of the plant, if there is one
+};
+
+/// What stands for PRINTER is an address, and no name.
+[[nodiscard]] bool is_address(std::string_view printer);
+
+/// How to talk to the printer at this address. FailureKind::usage: it is none; ::unreachable: there is no such host.
+[[nodiscard]] Result<printer::ClientSettings> direct_settings(const std::string& address, const DirectOptions& options);
+[[nodiscard]] Result<std::unique_ptr<printer::PrinterClient>> connect_directly(const std::string& address,
+                                                                               const DirectOptions& options);
+
+/// FailureKind::usage: a file that was given cannot be read, or is no table.
+[[nodiscard]] Result<std::function<printer::ErrorWords(const protocol::PrinterError&)>>
+read_error_words(const DirectOptions& options);
+
+} // namespace linefeed::client
