@@ -24,7 +24,8 @@ OpenRun Feeder::open_run() const {
             .serial_number = facts_.version ? facts_.version->serial_number : std::string{},
             .total_before = total_before_,
             .last_printed_before = left_over_,
-            .last = marker_sent_ ? std::optional{range.last()} : std::nullopt};
+            .last = marker_sent_ ? std::optional{range.last()} : std::nullopt,
+            .restarted = restarted_};
 }
 
 Evidence Feeder::evidence() const {
@@ -62,6 +63,9 @@ void Feeder::judge(Instant now, Actions& out) {
 
 void Feeder::record_printed(const Verdict& verdict, const Evidence& seen, Instant now, Actions& out) {
     first_look_ = seen;
+    if (verdict.basis == Basis::none) { // this printer may have left records out
+        (has_granted_records() ? restarted_ : plan_.open->restarted) = true;
+    }
     const RecordNumber confirmed = confirmed_through_;
     if (!verdict.printed.empty()) {
         (has_granted_records() ? confirmed_through_ : plan_.open->printed_through) = verdict.printed.last();

@@ -160,6 +160,18 @@ void Feeder::confirm_reported(Actions& out) {
     }
 }
 
+/// Behind an empty FIFO any number may follow (protocol, section 5): when the printer has printed all that it was seen
+/// to hold, and more, a record between may have been lost on its way, and skipped.
+bool Feeder::may_have_skipped() {
+    const std::uint64_t printed = refill_.printed_through().value();
+    const bool may = printed > chained_through_ + 1;
+    const std::uint64_t loaded = mail_.entries == 0 ? 0 : 1 - excess_of_fill_; // with 0 entries there may be none
+    const std::uint64_t held =
+        std::min<std::uint64_t>(printed + mail_.entries + loaded, refill_.sent_through().value());
+    chained_through_ = std::max(chained_through_, held);
+    return may;
+}
+
 /// Fewer records are in the printer than it surely received: a serial line has lost some, or another client has flushed
 /// the FIFO. The counter will tell whether it prints on behind them; without one it must not come so far.
 void Feeder::watch_for_missing(Instant now, Actions& out) {
@@ -170,7 +182,12 @@ void Feeder::watch_for_missing(Instant now, Actions& out) {
     if (missing_) {
         doubt_number();
     }
-    if (missing_ && missing_before && !total_before_) { // not just a damaged answer
+    if (total_before_) {
+        return;
+    }
+    const bool skipped = may_have_skipped();
+    restarted_ = restarted_ || skipped;            // and so no number counts
+    if (skipped || (missing_ && missing_before)) { // missing once: it may be a damaged answer
         begin_stop(OutcomeCode::stopped_at_printer, now, out);
     }
 }
@@ -204,10 +221,10 @@ void Feeder::confirm(RecordNumber through, Actions& out) {
     }
 }
 
-void Feeder::print_counters(Instant now, Actions& out) {
+void Feeder::print_counters(std::uint32_t total, Instant now, Actions& out) {
     std::optional<std::uint32_t> prints;
-    if (facts_.total_prints && total_before_) {
-        prints = *facts_.total_prints - *total_before_;
+    if (total_before_) {
+        prints = total - *total_before_;
     }
     const std::uint64_t sent = prints_through(refill_.sent_through()) + (marker_sent_ ? 1 : 0);
     switch (counter_proof_.counted(prints, prints_through(reported_through_), sent, stop_would_show(), now)) {

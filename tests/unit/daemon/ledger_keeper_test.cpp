@@ -199,6 +199,37 @@ TEST_F(LedgerKeeperTest, shouldFindAPrintThatMayBeBrokenOffInWhatARunLeftOpen) {
     EXPECT_TRUE(spool_->verify_ledger());
 }
 
+TEST_F(LedgerKeeperTest, shouldFindThatThePrinterLeftRecordsOutInARunThatIsOpen) {
+    feeder::Outcome outcome = ended(feeder::OutcomeCode::link_lost);
+    for (const bool restarted : {true, false}) {
+        LedgerKeeper ledger = keeper();
+        ASSERT_TRUE(ledger.grant(begin()));
+        outcome.restarted = restarted;
+        ASSERT_TRUE(ledger.finish(outcome));
+        EXPECT_EQ(find_open_issue(*spool_, job_).value()->facts.restarted, restarted);
+        ASSERT_TRUE(keeper().settle_earlier(verdict({}, {}, closed(1, 512))));
+    }
+}
+
+TEST_F(LedgerKeeperTest, shouldRememberOnceThatALaterLookFoundRecordsLeftOut) {
+    crash();
+    const std::size_t rows = kinds().size();
+    feeder::Outcome outcome = ended(feeder::OutcomeCode::link_lost);
+    outcome.restarted = true;
+    for (int looks = 0; looks < 2; ++looks) {
+        ASSERT_TRUE(keeper().finish(outcome));
+        EXPECT_TRUE(find_open_issue(*spool_, job_).value()->facts.restarted);
+        EXPECT_EQ(kinds().size(), rows + 1);
+    }
+}
+
+TEST_F(LedgerKeeperTest, shouldKeepNothingOfAPrintThatIsNotOfOurs) {
+    feeder::Outcome outcome = ended(feeder::OutcomeCode::not_ready);
+    outcome.broken_off = RecordNumber{5}; // another job's, found before the first run
+    ASSERT_TRUE(keeper().finish(outcome));
+    EXPECT_TRUE(kinds().empty());
+}
+
 TEST_F(LedgerKeeperTest, shouldFindTheEndOfACrashedRunWhenTheImportHasReachedIt) {
     RecordPage page{RecordNumber{1}, {}, {}};
     for (std::uint32_t number = 1; number <= 300; ++number) {

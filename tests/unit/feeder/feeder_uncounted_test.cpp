@@ -2,6 +2,8 @@
 // Only its stop point shows that, and the FIFO before the start.
 #include "story.hpp"
 
+#include <gmock/gmock.h>
+
 namespace linefeed::feeder {
 namespace {
 
@@ -101,6 +103,39 @@ TEST(FeederUncounted, shouldStopWhenARecordIsMissingInThePrinter) {
     EXPECT_NE(story.take().find("!ST; ?RS"), std::string::npos);
     story.judge(0, 104);
     EXPECT_NE(story.take().find("in doubt none, unused 105-105"), std::string::npos) << "it stops before the gap";
+}
+
+TEST(FeederUncounted, shouldDoubtWhatMayHaveBeenSkippedBehindAnEmptyFifo) {
+    for (const std::uint32_t next : {105U, 106U}) {
+        Story story = printing();
+        story.sm(0, 104, 110); // empty, or one is loaded
+        story.supplied(Story::last);
+        story.take();
+        story.sm(0, next, 110); // 105 is next; 106 may have come first if 105 was lost on its way
+        const bool stopped = story.take().find("!ST; ?RS") != std::string::npos;
+        EXPECT_EQ(stopped, next == 106);
+        story.judge(0, next);
+        const std::string doubt = next == 105 ? "in doubt none" : "in doubt 105-108";
+        EXPECT_THAT(story.take(), testing::HasSubstr(doubt)) << next;
+    }
+}
+
+TEST(FeederUncounted, shouldBelieveALeapOverRecordsThatWereSeenInThePrinter) {
+    Story story = printing();
+    story.sm(0, 101, 110); // perhaps damaged: it held up to 104 before
+    story.take();
+    story.sm(0, 104, 110);
+    EXPECT_EQ(story.take().find("!ST"), std::string::npos);
+}
+
+TEST(FeederUncounted, shouldNotTakeACounterForAProofThatWasNotToldBefore) {
+    Story story = printing();
+    story.sm(2, 101, 110);
+    story.sm(3, 101, 110);
+    EXPECT_NE(story.take().find("printed through 101"), std::string::npos);
+    story.cc(1); // an inquiry of the start, answered late
+    story.expect("");
+    EXPECT_EQ(story.phase(), Phase::printing);
 }
 
 TEST(FeederUncounted, shouldAskAgainForACounterThatOnlyGotDamaged) {

@@ -226,6 +226,27 @@ TEST_F(SpoolLedgerTest, shouldKnowTheNewestRunAndWhetherItEnded) {
     EXPECT_FALSE(spool->last_run(job.id).value()->ended);
 }
 
+TEST_F(SpoolLedgerTest, shouldKnowTheNewestRowOfAJob) {
+    const Job other = make_job(*spool, 10);
+    EXPECT_EQ(spool->last_ledger_row(job.id).value(), 0) << "nothing is written about it yet";
+    const RunId run = begin_run();
+    ASSERT_TRUE(append(*spool, job.id, {{LedgerKind::intent, run, range(1, 5), ""}}));
+    EXPECT_EQ(spool->last_ledger_row(job.id).value(), spool->ledger_rows(job.id, 0, 10).value().back().sequence);
+    EXPECT_EQ(spool->last_ledger_row(other.id).value(), 0);
+}
+
+TEST_F(SpoolLedgerTest, shouldFindTheDoubtOfARunWithItsBegin) {
+    const RunId first = begin_run();
+    ASSERT_TRUE(append(*spool, job.id, {{LedgerKind::intent, first, range(1, 5), ""}}));
+    ASSERT_TRUE(append(*spool, job.id, {{LedgerKind::in_doubt, first, range(1, 5), "a"}}));
+    ASSERT_TRUE(append(*spool, job.id, {{LedgerKind::released, first, range(1, 5), ""}}));
+    const auto rows = spool->doubt_rows(job.id, first).value();
+    ASSERT_EQ(rows.size(), 2U);
+    EXPECT_EQ(rows[0].entry.kind, LedgerKind::run_started);
+    EXPECT_EQ(rows[1].entry.evidence, "a");
+    EXPECT_TRUE(spool->doubt_rows(job.id, RunId{4711}).value().empty());
+}
+
 TEST_F(SpoolLedgerTest, shouldListTheJobsWithOpenRecords) {
     const Job other = make_job(*spool, 10);
     const RunId run = begin_run();
