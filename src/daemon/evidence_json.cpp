@@ -112,7 +112,7 @@ private:
         }
     }
     void take_flag(std::string_view key, bool value) override {
-        end_.restarted = end_.restarted || (key == "restarted" && value);
+        end_.unclear = end_.unclear || (key == "unclear" && value);
     }
 
     RunEnd end_;
@@ -173,8 +173,8 @@ std::string outcome_json(const feeder::Outcome& outcome) {
     if (outcome.broken_off != RecordNumber{}) {
         json.add("broken_off", outcome.broken_off.value());
     }
-    if (outcome.restarted) {
-        json.add_json("restarted", "true");
+    if (outcome.unclear) {
+        json.add_json("unclear", "true");
     }
     return json.text();
 }

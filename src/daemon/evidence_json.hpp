@@ -23,7 +23,7 @@ struct RunStart {
 /// What a run_ended row remembers of Outcome, for the records that the run has left open.
 struct RunEnd {
     RecordNumber broken_off;
-    bool restarted = false;
+    bool unclear = false;
 
     friend bool operator==(const RunEnd&, const RunEnd&) = default;
 };

@@ -155,7 +155,7 @@ bool Feeder::lacks_value(const protocol::MailStatus& status) {
 /// to be carried out.
 void Feeder::locate_step(Instant now, Actions& out) {
     const bool stands = status_.machine != MachineState::printing;
-    if (std::exchange(stood_, stands) && stands) { // perhaps it is started again before it has been judged
+    if (stands && std::exchange(stood_, true)) { // perhaps it is started again before it has been judged
         note_unfinished();
         note_restart();
     }

@@ -205,6 +205,7 @@ private:
     [[nodiscard]] Report judge_report();
     void note_unfinished();
     void note_restart();
+    [[nodiscard]] RecordNumber printed_at_most() const;
     [[nodiscard]] bool may_have_skipped();
     void watch_for_missing(Instant now, Actions& out);
     void doubt_number();
@@ -318,6 +319,7 @@ private:
     bool supply_noticed_ = false;            ///< low, and said so
     std::optional<Instant> suspected_since_; ///< the stop point vanished: nothing is sent before `?RS` has told why
     bool restarted_ = false;                 ///< stopped and started again at the printer, as records were on their way
+    bool nobody_knows_ = false;              ///< at the look before the flush, which records are printed
     bool fed_by_another_ = false;            ///< by what was reported while it printed
     RecordNumber broken_off_;                ///< a print that was not finished when the printer stood; 0 = none
     bool memory_lost_ = false;               ///< the reported number went back

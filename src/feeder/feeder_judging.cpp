@@ -25,7 +25,7 @@ OpenRun Feeder::open_run() const {
             .total_before = total_before_,
             .last_printed_before = left_over_,
             .last = marker_sent_ ? std::optional{range.last()} : std::nullopt,
-            .restarted = restarted_};
+            .unclear = restarted_ || nobody_knows_};
 }
 
 Evidence Feeder::evidence() const {
@@ -63,8 +63,8 @@ void Feeder::judge(Instant now, Actions& out) {
 
 void Feeder::record_printed(const Verdict& verdict, const Evidence& seen, Instant now, Actions& out) {
     first_look_ = seen;
-    if (verdict.basis == Basis::none) { // this printer may have left records out
-        (has_granted_records() ? restarted_ : plan_.open->restarted) = true;
+    if (verdict.basis == Basis::none) {
+        (has_granted_records() ? nobody_knows_ : plan_.open->unclear) = true;
     }
     const RecordNumber confirmed = confirmed_through_;
     if (!verdict.printed.empty()) {

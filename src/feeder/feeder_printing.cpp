@@ -160,6 +160,13 @@ void Feeder::confirm_reported(Actions& out) {
     }
 }
 
+/// The number that stood there before this run may be that of a record which is printed once more.
+RecordNumber Feeder::printed_at_most() const {
+    const bool unclear = !left_over_passed_ && mail_.last_printed == left_over_;
+    const RecordNumber left_over = unclear ? std::min(left_over_, refill_.sent_through()) : RecordNumber{};
+    return std::max(left_over, refill_.printed_through());
+}
+
 /// Behind an empty FIFO any number may follow (protocol, section 5): when the printer has printed all that it was seen
 /// to hold, and more, a record between may have been lost on its way, and skipped.
 bool Feeder::may_have_skipped() {
@@ -175,7 +182,7 @@ bool Feeder::may_have_skipped() {
 /// Fewer records are in the printer than it surely received: a serial line has lost some, or another client has flushed
 /// the FIFO. The counter will tell whether it prints on behind them; without one it must not come so far.
 void Feeder::watch_for_missing(Instant now, Actions& out) {
-    const std::uint64_t held = refill_.printed_through().value() + mail_.entries + std::uint64_t{1};
+    const std::uint64_t held = printed_at_most().value() + mail_.entries + std::uint64_t{1};
     const bool missing_before = missing_;
     held_through_ = std::min<std::uint64_t>(held, refill_.sent_through().value() + (marker_sent_ ? 1 : 0));
     missing_ = held < surely_received_.value();
@@ -185,9 +192,10 @@ void Feeder::watch_for_missing(Instant now, Actions& out) {
     if (total_before_) {
         return;
     }
-    const bool skipped = may_have_skipped();
-    restarted_ = restarted_ || skipped;            // and so no number counts
-    if (skipped || (missing_ && missing_before)) { // missing once: it may be a damaged answer
+    if (may_have_skipped()) {
+        restarted_ = true; // and so no number counts
+        begin_stop(OutcomeCode::stopped_at_printer, now, out);
+    } else if (missing_ && missing_before) { // once: it may be a damaged answer
         begin_stop(OutcomeCode::stopped_at_printer, now, out);
     }
 }

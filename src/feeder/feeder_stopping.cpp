@@ -145,8 +145,8 @@ void Feeder::end(OutcomeCode code, Actions& out) {
     retry_at_.reset();
     deadline_.reset();
     go_due_.reset();
-    const bool restarted = restarted_ || (plan_.open && plan_.open->restarted);
-    out.push_back(End{{code, status_.machine, status_.error, any_sent_, broken_off_, restarted}});
+    const bool unclear = restarted_ || nobody_knows_ || (plan_.open && plan_.open->unclear);
+    out.push_back(End{{code, status_.machine, status_.error, any_sent_, broken_off_, unclear}});
 }
 
 } // namespace linefeed::feeder

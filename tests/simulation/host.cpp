@@ -162,7 +162,7 @@ void Host::end_process(OutcomeCode code) {
         if (const auto state = spool_->ledger_state(job_)) {
             records_open_ = state->count(spool::RecordState::open) > RecordCount{0};
             const auto open = daemon::find_open_issue(*spool_, job_);
-            knows_of_gap_ = open && *open && (*open)->facts.restarted;
+            knows_of_gap_ = open && *open && (*open)->facts.unclear;
             judge_.check_ledger(*state);
             ending_.in_doubt = state->ranges(spool::RecordState::in_doubt);
             for (const RecordRange& doubt : ending_.in_doubt) {

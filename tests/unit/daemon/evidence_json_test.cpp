@@ -98,14 +98,14 @@ TEST(EvidenceJson, shouldReadBackThatAPrintMayBeBrokenOff) {
     EXPECT_EQ(parse_run_end("{"), std::nullopt);
 }
 
-TEST(EvidenceJson, shouldReadBackThatThePrinterWasRestarted) {
+TEST(EvidenceJson, shouldReadBackThatNobodyKnewTheRecords) {
     feeder::Outcome outcome;
     outcome.code = feeder::OutcomeCode::link_lost;
-    outcome.restarted = true;
-    EXPECT_EQ(outcome_json(outcome), R"({"outcome":"link_lost","machine":"standby","restarted":true})");
+    outcome.unclear = true;
+    EXPECT_EQ(outcome_json(outcome), R"({"outcome":"link_lost","machine":"standby","unclear":true})");
     EXPECT_EQ(parse_run_end(outcome_json(outcome)), (RunEnd{RecordNumber{}, true}));
-    EXPECT_EQ(parse_run_end(R"({"restarted":false,"other":true})"), RunEnd{});
-    EXPECT_EQ(parse_run_end(R"({"restarted":1,"of":{"restarted":true}})"), RunEnd{});
+    EXPECT_EQ(parse_run_end(R"({"unclear":false,"other":true})"), RunEnd{});
+    EXPECT_EQ(parse_run_end(R"({"unclear":1,"of":{"unclear":true}})"), RunEnd{});
 }
 
 } // namespace

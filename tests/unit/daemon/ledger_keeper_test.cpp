@@ -201,12 +201,12 @@ TEST_F(LedgerKeeperTest, shouldFindAPrintThatMayBeBrokenOffInWhatARunLeftOpen) {
 
 TEST_F(LedgerKeeperTest, shouldFindThatThePrinterLeftRecordsOutInARunThatIsOpen) {
     feeder::Outcome outcome = ended(feeder::OutcomeCode::link_lost);
-    for (const bool restarted : {true, false}) {
+    for (const bool unclear : {true, false}) {
         LedgerKeeper ledger = keeper();
         ASSERT_TRUE(ledger.grant(begin()));
-        outcome.restarted = restarted;
+        outcome.unclear = unclear;
         ASSERT_TRUE(ledger.finish(outcome));
-        EXPECT_EQ(find_open_issue(*spool_, job_).value()->facts.restarted, restarted);
+        EXPECT_EQ(find_open_issue(*spool_, job_).value()->facts.unclear, unclear);
         ASSERT_TRUE(keeper().settle_earlier(verdict({}, {}, closed(1, 512))));
     }
 }
@@ -215,10 +215,10 @@ TEST_F(LedgerKeeperTest, shouldRememberOnceThatALaterLookFoundRecordsLeftOut) {
     crash();
     const std::size_t rows = kinds().size();
     feeder::Outcome outcome = ended(feeder::OutcomeCode::link_lost);
-    outcome.restarted = true;
+    outcome.unclear = true;
     for (int looks = 0; looks < 2; ++looks) {
         ASSERT_TRUE(keeper().finish(outcome));
-        EXPECT_TRUE(find_open_issue(*spool_, job_).value()->facts.restarted);
+        EXPECT_TRUE(find_open_issue(*spool_, job_).value()->facts.unclear);
         EXPECT_EQ(kinds().size(), rows + 1);
     }
 }

@@ -418,13 +418,13 @@ TEST(FeederStopping, shouldSayThatNobodyKnowsWhichRecordsWerePrinted) {
     story.stop();
     story.judge_unsettled(0, 104, true, 1002); // two of four
     story.link_lost();
-    EXPECT_TRUE(std::get<End>(story.actions[story.actions.size() - 1]).outcome.restarted);
+    EXPECT_TRUE(std::get<End>(story.actions[story.actions.size() - 1]).outcome.unclear);
 
     Story next{quick_settings(), plan_with(earlier_run())};
     next.identify();
     next.locate(150, 920);
     next.link_lost();
-    EXPECT_TRUE(std::get<End>(next.actions[next.actions.size() - 1]).outcome.restarted);
+    EXPECT_TRUE(std::get<End>(next.actions[next.actions.size() - 1]).outcome.unclear);
 }
 
 TEST(FeederStopping, shouldSayThatAnOpenRunMayHaveLeftRecordsOut) {
@@ -434,15 +434,15 @@ TEST(FeederStopping, shouldSayThatAnOpenRunMayHaveLeftRecordsOut) {
     story.rs(State::printing);
     story.take();
     story.link_lost();
-    EXPECT_TRUE(std::get<End>(story.actions[0]).outcome.restarted);
+    EXPECT_TRUE(std::get<End>(story.actions[0]).outcome.unclear);
 
     FeederPlan plan = plan_with(earlier_run());
-    for (const bool restarted : {true, false}) {
-        plan.open->restarted = restarted;
+    for (const bool unclear : {true, false}) {
+        plan.open->unclear = unclear;
         Story next{quick_settings(), plan};
         next.identify();
         next.link_lost();
-        EXPECT_EQ(std::get<End>(next.actions[0]).outcome.restarted, restarted) << "nobody has settled it yet";
+        EXPECT_EQ(std::get<End>(next.actions[0]).outcome.unclear, unclear) << "nobody has settled it yet";
     }
 }
 

@@ -133,9 +133,29 @@ TEST(FeederUncounted, shouldNotTakeACounterForAProofThatWasNotToldBefore) {
     story.sm(2, 101, 110);
     story.sm(3, 101, 110);
     EXPECT_NE(story.take().find("printed through 101"), std::string::npos);
+    EXPECT_EQ(story.feeder.machine().machine, State::printing);
     story.cc(1); // an inquiry of the start, answered late
     story.expect("");
     EXPECT_EQ(story.phase(), Phase::printing);
+}
+
+TEST(FeederUncounted, shouldPrintARecordOnceMoreWhoseNumberStandsThereFromBefore) {
+    Story story; // the print of 101 was broken off; the operator has it printed again
+    story.identify();
+    story.locate(101, std::nullopt);
+    story.granted();
+    story.sm(0, 101, 0, false);
+    story.sm(0, 101, 110, false);
+    story.supplied(Story::last);
+    story.sm(3, 101, 110, false);
+    story.wait(milliseconds{4});
+    story.rs(State::printing);
+    for (int answers = 0; answers < 4; ++answers) {
+        story.sm(2, 101, 110); // printed: nothing is missing
+    }
+    story.take();
+    story.sm(1, 102, 110);
+    story.expect("=MR 105-106");
 }
 
 TEST(FeederUncounted, shouldAskAgainForACounterThatOnlyGotDamaged) {

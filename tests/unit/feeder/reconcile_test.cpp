@@ -317,7 +317,7 @@ TEST(Reconcile, shouldBoundTheDoubtByTheCounterAfterAPowerCycle) {
 TEST(Reconcile, shouldDoubtEverythingAfterAPowerCycleWhenRecordsWereLeftOut) {
     OpenRun run = run_with(100);
     EXPECT_EQ(verdict(run, says(0, 1004)), "printed none, in doubt 101-105, unused 106-120 by total print counter");
-    run.restarted = true; // 101, 102, 117 and 118, perhaps
+    run.unclear = true; // 101, 102, 117 and 118, perhaps
     EXPECT_EQ(verdict(run, says(0, 1004)), doubt_from_101);
 }
 
