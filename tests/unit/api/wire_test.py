@@ -508,6 +508,12 @@ class Uploads(unittest.TestCase):
     def left(self, service):
         return list((service.path / "uploads").iterdir())
 
+    def assert_nothing_is_left(self, service):
+        deadline = time.monotonic() + 10
+        while self.left(service) and time.monotonic() < deadline:
+            time.sleep(0.01)
+        self.assertEqual(self.left(service), [])
+
     def test_a_file_becomes_a_job_and_nothing_stays(self):
         with Service(tokens=TOKENS) as service:
             content = b"name\r\n" + b"a\r\n" * 2_000_000
@@ -548,7 +554,7 @@ class Uploads(unittest.TestCase):
                 answer = read_all(raw)
                 self.assertIn(b" 413 ", answer)
             self.assertEqual(service.changes(), 0)
-            self.assertEqual(self.left(service), [])
+            self.assert_nothing_is_left(service)
 
     def test_a_client_that_goes_away_leaves_nothing(self):
         with Service() as service:
@@ -559,10 +565,7 @@ class Uploads(unittest.TestCase):
                     time.sleep(0.01)
                 self.assertEqual(len(self.left(service)), 1)
                 self.assertEqual(stat.S_IMODE(self.left(service)[0].stat().st_mode), 0o600)
-            deadline = time.monotonic() + 10
-            while self.left(service) and time.monotonic() < deadline:
-                time.sleep(0.01)
-            self.assertEqual(self.left(service), [])
+            self.assert_nothing_is_left(service)
             self.assertEqual(service.changes(), 0)
 
     def test_what_a_killed_service_left_is_removed(self):

@@ -128,17 +128,6 @@ TEST(FeederUncounted, shouldBelieveALeapOverRecordsThatWereSeenInThePrinter) {
     EXPECT_EQ(story.take().find("!ST"), std::string::npos);
 }
 
-TEST(FeederUncounted, shouldNotTakeACounterForAProofThatWasNotToldBefore) {
-    Story story = printing();
-    story.sm(2, 101, 110);
-    story.sm(3, 101, 110);
-    EXPECT_NE(story.take().find("printed through 101"), std::string::npos);
-    EXPECT_EQ(story.feeder.machine().machine, State::printing);
-    story.cc(1); // an inquiry of the start, answered late
-    story.expect("");
-    EXPECT_EQ(story.phase(), Phase::printing);
-}
-
 TEST(FeederUncounted, shouldPrintARecordOnceMoreWhoseNumberStandsThereFromBefore) {
     Story story; // the print of 101 was broken off; the operator has it printed again
     story.identify();
@@ -179,10 +168,35 @@ TEST(FeederUncounted, shouldAskAgainForACounterThatOnlyGotDamaged) {
 
 TEST(FeederUncounted, shouldDoubtWhatIsPrintedBetweenTheLooks) {
     Story story = printing();
+    EXPECT_EQ(story.feeder.machine().machine, State::printing);
     story.stop();
     story.judge_unsettled(2, 102);
     story.clear_fifo(104); // somebody has started it before the flush
     EXPECT_NE(story.take().find("in doubt 103-104"), std::string::npos);
+}
+
+TEST(FeederUncounted, shouldTakeNoUnfinishedPrintOverForSure) {
+    for (const bool finished : {true, false}) {
+        Story story{quick_settings(), takeover_plan()};
+        story.reported_depth = 16;
+        story.identify(State::printing);
+        story.sm(3, 150, 200);
+        story.sm(3, 150, 200);
+        story.take();
+        story.cc(std::nullopt);
+        story.sm(2, 151, 200, finished);
+        story.sm(2, 151, 200, finished);
+        const std::string adopted = finished ? "printed through 151" : "printed through 150";
+        EXPECT_NE(story.take().find("adopt run, " + adopted), std::string::npos);
+    }
+}
+
+TEST(FeederUncounted, shouldBelieveTheNumbersOfACounterThatAppearsInMidRun) {
+    Story story = printing();
+    story.sm(0, 104, 110);
+    story.take();
+    story.cc(1004); // nobody knows where it began
+    story.expect("");
 }
 
 TEST(FeederUncounted, shouldTakeOverOnlyWhereTheStopPointStands) {
