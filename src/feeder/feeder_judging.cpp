@@ -41,7 +41,8 @@ Evidence Feeder::evidence() const {
             .uninterrupted = !memory_lost_,
             .restarted = restarted_,
             .restart_unseen = counter_proof_.doubted(),
-            .fed_by_another = fed_by_another_ || is_error(status_.error, protocol::error_code::buffer_full),
+            .fed_by_another = fed_by_another_ || is_error(status_.error, protocol::error_code::buffer_full) ||
+                              (!total_before_ && breaks_numbers(status_.error)), // a counter would tell
             .broken_off = broken_off_};
 }
 

@@ -105,6 +105,17 @@ TEST(FeederUncounted, shouldStopWhenARecordIsMissingInThePrinter) {
     EXPECT_NE(story.take().find("in doubt none, unused 105-105"), std::string::npos) << "it stops before the gap";
 }
 
+TEST(FeederUncounted, shouldDoubtTheNumberOfAPrinterThatFindsItsNumbersOutOfOrder) {
+    for (const std::uint32_t error : {1018U, 1019U, 4711U}) {
+        Story story = printing();
+        story.sm(2, 101, 110);
+        story.take();
+        story.judge(0, 103, true, std::nullopt, raw_error(error)); // another client's 103, behind our 104?
+        const std::string verdict = error == 4711 ? "unused 104-105" : "in doubt 101-105";
+        EXPECT_THAT(story.take(), testing::HasSubstr(verdict)) << error;
+    }
+}
+
 TEST(FeederUncounted, shouldDoubtWhatMayHaveBeenSkippedBehindAnEmptyFifo) {
     for (const std::uint32_t next : {105U, 106U}) {
         Story story = printing();
