@@ -180,8 +180,7 @@ Result<std::int64_t> Spool::last_ledger_row(JobId job) {
     if (!statement) {
         return statement.error();
     }
-    const auto row = statement->bind(1, static_cast<std::int64_t>(job)).step();
-    if (!row) {
+    if (const auto row = statement->bind(1, static_cast<std::int64_t>(job)).step(); !row) {
         return row.error();
     }
     return statement->number(0);

@@ -179,7 +179,6 @@ TEST(FeederUncounted, shouldAskAgainForACounterThatOnlyGotDamaged) {
 
 TEST(FeederUncounted, shouldDoubtWhatIsPrintedBetweenTheLooks) {
     Story story = printing();
-    EXPECT_EQ(story.feeder.machine().machine, State::printing);
     story.stop();
     story.judge_unsettled(2, 102);
     story.clear_fifo(104); // somebody has started it before the flush
@@ -202,12 +201,18 @@ TEST(FeederUncounted, shouldTakeNoUnfinishedPrintOverForSure) {
     }
 }
 
-TEST(FeederUncounted, shouldBelieveTheNumbersOfACounterThatAppearsInMidRun) {
+TEST(FeederUncounted, shouldBelieveTheNumbersOfAPrinterWhoseCounterAppearsInMidRun) {
     Story story = printing();
-    story.sm(0, 104, 110);
-    story.take();
-    story.cc(1004); // nobody knows where it began
-    story.expect("");
+    story.sm(1, 102, 110);
+    story.sm(3, 102, 110);
+    EXPECT_NE(story.take().find("printed through 102"), std::string::npos);
+    for (int looks = 0; looks < 3; ++looks) {
+        story.cc(1); // nobody knows where it began, so it cannot be behind
+        story.wait(CounterProof::patience);
+        story.sm(3, 102, 110);
+    }
+    EXPECT_EQ(story.take().find("!ST"), std::string::npos);
+    EXPECT_EQ(story.phase(), Phase::printing);
 }
 
 TEST(FeederUncounted, shouldTakeOverOnlyWhereTheStopPointStands) {
