@@ -160,7 +160,10 @@ std::uint64_t Faults::foreign_number() {
     const std::uint64_t number = random_.spread(1, printed > 1 && random_.chance(0.5) ? printed - 1 : 1U << 30U);
     const bool order_is_checked = context_.scenario.prints_are_counted() || line_.look().fifo().loaded() != nullptr;
     const std::uint64_t least = order_is_checked ? printed : context_.scenario.first();
-    return (number >= least && number <= next + near) ? next + near + 1 : number;
+    const bool in_job = number >= context_.scenario.first() && number <= context_.scenario.last();
+    const bool stands_for_ours = in_job && !judge_.is_on_a_product(RecordNumber{static_cast<std::uint32_t>(number)});
+    const bool small_jump = number >= least && number <= next + near;
+    return stands_for_ours || small_jump ? next + near + 1 : number;
 }
 
 } // namespace linefeed::simulation
