@@ -307,7 +307,7 @@ private:
     std::uint64_t held_through_ = 0;
     /// Seen in the printer up to this number: it finds its numbers out of order if one is missing.
     std::uint64_t chained_through_ = 0;
-    bool missing_ = false;             ///< records, by that answer
+    int missing_ = 0;                  ///< answers in a row by which records are missing
     RecordNumber said_before_;         ///< surely printed by the answer before, taken by itself
     std::uint64_t excess_of_fill_ = 0; ///< 1: its firmware counts the loaded record, too
     std::optional<std::uint32_t> total_before_;

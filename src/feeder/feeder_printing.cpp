@@ -29,6 +29,10 @@ void Feeder::print_status(Instant now, Actions& out) {
     if (suspected_since_) {
         stop_suspected(now, out);
     }
+    if (phase_ == Phase::printing && missing_ > 1 && mail_.entries == 0) {
+        begin_stop(OutcomeCode::stopped_at_printer, now, out); // nothing of it is left for the next product
+        return;
+    }
     if (phase_ == Phase::printing && is_error(status_.error, protocol::error_code::buffer_full)) {
         fed_by_another_ = true;
         begin_stop(OutcomeCode::impossible_report, now, out); // by our credit there was room
@@ -180,13 +184,13 @@ bool Feeder::may_have_skipped() {
 }
 
 /// Fewer records are in the printer than it surely received: a serial line has lost some, or another client has flushed
-/// the FIFO. The counter will tell whether it prints on behind them; without one it must not come so far.
+/// the FIFO. The counter will tell whether it prints on behind them; without one it must not come so far. When nothing
+/// is left, print_status() sees to it.
 void Feeder::watch_for_missing(Instant now, Actions& out) {
     const std::uint64_t held = printed_at_most().value() + mail_.entries + std::uint64_t{1};
-    const bool missing_before = missing_;
     held_through_ = std::min<std::uint64_t>(held, refill_.sent_through().value() + (marker_sent_ ? 1 : 0));
-    missing_ = held < surely_received_.value();
-    if (missing_) {
+    missing_ = held < surely_received_.value() ? missing_ + 1 : 0;
+    if (missing_ > 0) {
         doubt_number();
     }
     if (total_before_) {
@@ -195,7 +199,7 @@ void Feeder::watch_for_missing(Instant now, Actions& out) {
     if (may_have_skipped()) {
         restarted_ = true; // and so no number counts
         begin_stop(OutcomeCode::stopped_at_printer, now, out);
-    } else if (missing_ && missing_before) { // once: it may be a damaged answer
+    } else if (missing_ > 1) { // once: it may be a damaged answer
         begin_stop(OutcomeCode::stopped_at_printer, now, out);
     }
 }
