@@ -189,6 +189,7 @@ struct ImportRequest {
     std::string printer{};        ///< queue it there; empty = no queue
     bool autostart = false;       ///< may start by itself if its printer's queue does so too
     bool again = false;           ///< import the same content once more, as a new job
+    bool sent = false;            ///< came as a body: what lies beside it belongs to others
 };
 
 struct ImportAnswer {
