@@ -39,7 +39,7 @@ std::string check(const Argument& argument, const Json& value) {
     case Argument::Type::number:
         break;
     }
-    if (value.is_number_unsigned()) {
+    if (value.is_number_unsigned() || (value.is_number_integer() && value.get<std::int64_t>() >= 0)) {
         const auto number = value.get<std::uint64_t>();
         if (number >= argument.smallest && number <= argument.largest) {
             return "";
