@@ -5,7 +5,7 @@
 # usage: deploy/dependencies.sh [build] [test] [lint] [fuzz] [package]     (without arguments: build)
 set -euo pipefail
 
-build_packages=(cmake ninja-build g++ libboost1.81-dev libsqlite3-dev sqlite3 zlib1g-dev libssl-dev libcli11-dev nlohmann-json3-dev libyaml-cpp-dev libspdlog-dev libsystemd-dev prometheus-cpp-dev)
+build_packages=(cmake ninja-build g++ libboost1.81-dev libsqlite3-dev sqlite3 zlib1g-dev libssl-dev libpng-dev libcli11-dev nlohmann-json3-dev libyaml-cpp-dev libspdlog-dev libsystemd-dev prometheus-cpp-dev)
 test_packages=(libgtest-dev libgmock-dev libbenchmark-dev python3 python3-jsonschema python3-yaml gcovr valgrind
                scdoc shellcheck systemd prometheus)
 lint_packages=(clang-format-14 clang-tidy-14)

@@ -8,7 +8,7 @@ _linefeed_help() { # PROGRAM [COMMAND]
 
 # Names of commands: two spaces, a name, its description, below the heading.
 _linefeed_commands() {
-    awk '/^Subcommands:/ { on = 1; next } /^[^ ]/ { on = 0 } on && /^  [a-z]/ { print $1 }'
+    awk '/^Subcommands:/ { on = 1; next } /^[^ ]/ { on = 0 } on && /^  [a-z]/ { sub(/,$/, "", $1); print $1 }'
 }
 
 _linefeed_options() {
@@ -29,15 +29,20 @@ _linefeed_takes_value() { # OPTION
         END { exit !found }'
 }
 
-# The help of the command that the words so far have led to; names that are no command at their place are arguments.
+# The help of the command that the words so far have led to; names that are no command at their place are arguments, behind which there may
+# be commands again: linefeed printer line1 nozzle.
 _linefeed_help_of_line() { # PROGRAM
     local path=("$1") help i word
     help=$(_linefeed_help "${path[@]}")
     for ((i = 1; i < COMP_CWORD; ++i)); do
         word=${COMP_WORDS[i]}
-        if [[ $word != -* ]] && _linefeed_commands <<< "$help" | grep -qxF -- "$word"; then
+        if [[ $word == -* ]]; then
+            continue
+        elif _linefeed_commands <<< "$help" | grep -qxF -- "$word"; then
             path+=("$word")
             help=$(_linefeed_help "${path[@]}")
+        elif [[ ${path[-1]} == printer ]]; then
+            path+=("$word")
         fi
     done
     printf '%s\n' "$help"

@@ -101,19 +101,23 @@ Checked<void> read_body_header(const Header& header, const BodyLimits& limits, A
     }
     admitted.media_type = media_type_of(header.field("content-type"));
     admitted.upload =
-        route.body == Body::import && (admitted.media_type == media::csv || admitted.media_type == media::sqlite);
-    const bool untyped = admitted.media_type.empty() && !comes && route.body != Body::import;
+        (route.body == Body::import && (admitted.media_type == media::csv || admitted.media_type == media::sqlite)) ||
+        (route.body == Body::file && admitted.media_type == media::bytes);
+    const bool untyped =
+        admitted.media_type.empty() && !comes && route.body != Body::import && route.body != Body::file;
     const std::string_view encoding = header.field("content-encoding");
-    if ((!untyped && !admitted.upload && admitted.media_type != media::json) ||
-        (!encoding.empty() && encoding != "identity")) {
+    const bool json = admitted.media_type == media::json && route.body != Body::file;
+    if ((!untyped && !admitted.upload && !json) || (!encoding.empty() && encoding != "identity")) {
         return Problem{ProblemType::unsupported_type,
                        encoding.empty() ? "the body has the type \"" + admitted.media_type + '"'
                                         : "the body is encoded: " + std::string{encoding},
-                       route.body == Body::import
+                       route.body == Body::file ? "send the bytes as application/octet-stream"
+                       : route.body == Body::import
                            ? "send JSON as application/json, or the file as text/csv or application/vnd.sqlite3"
                            : "send JSON as application/json, or no body and no Content-Type where none is needed"};
     }
-    if (!header.chunked && !header.content_length && (route.body == Body::json || route.body == Body::import)) {
+    if (!header.chunked && !header.content_length &&
+        (route.body == Body::json || route.body == Body::import || route.body == Body::file)) {
         return Problem{ProblemType::length_required, "there is no body, or its length is not known",
                        "send it with Content-Length, or in chunks"};
     }

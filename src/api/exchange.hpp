@@ -22,6 +22,7 @@ inline constexpr std::string_view metrics = "text/plain; version=0.0.4; charset=
 inline constexpr std::string_view events = "text/event-stream";
 inline constexpr std::string_view csv = "text/csv";
 inline constexpr std::string_view sqlite = "application/vnd.sqlite3";
+inline constexpr std::string_view bytes = "application/octet-stream";
 } // namespace media
 
 /// What a client may do. Each role may do what those before it may.

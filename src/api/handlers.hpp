@@ -31,6 +31,8 @@ namespace linefeed::api::handlers {
 [[nodiscard]] Outcome accept_printer(const Request& request, Services& services);
 [[nodiscard]] Outcome inspect(const Request& request, Services& services);
 [[nodiscard]] Outcome command(const Request& request, Services& services);
+[[nodiscard]] Outcome read_file(const Request& request, Services& services);
+[[nodiscard]] Outcome write_file(const Request& request, Services& services);
 [[nodiscard]] Outcome suspend(const Request& request, Services& services);
 
 // job_handlers.cpp, job_read_handlers.cpp

@@ -140,6 +140,25 @@ Outcome accept_printer(const Request& request, Services& services) {
                         services);
 }
 
+Outcome read_file(const Request& request, Services& services) {
+    auto bytes = services.operations.read_file(request.parameter, request.query.text("path"));
+    if (!bytes) {
+        return printer_problem(bytes.error(), request.parameter, services);
+    }
+    return Answer{.content_type = media::bytes, .body = *std::move(bytes)};
+}
+
+Outcome write_file(const Request& request, Services& services) {
+    const auto replace = request.query.flag("replace");
+    if (!replace) {
+        return replace.error();
+    }
+    return printer_done(request,
+                        services.operations.write_file(request.caller, request.parameter,
+                                                       {request.query.text("path"), *request.upload, *replace}),
+                        services);
+}
+
 Outcome inspect(const Request& request, Services& services) {
     Json arguments = Json::object();
     if (const printer::Task* const task = printer::find_task(request.what)) {

@@ -39,6 +39,7 @@ enum class Body {
     optional_json,
     json,
     import, ///< JSON, or a file to print
+    file,   ///< bytes
 };
 
 /// How an answer comes about.

@@ -152,6 +152,11 @@ Result<Json> Service::get(std::string_view target) {
     return json_result(std::move(reply->body));
 }
 
+Result<std::string> Service::get_bytes(std::string_view target) {
+    auto reply = client_.get(target);
+    return reply ? Result<std::string>{std::move(reply->text)} : explained(reply.error());
+}
+
 Result<std::vector<Json>> Service::list(std::string_view target, std::size_t limit) {
     std::vector<Json> items;
     const auto done = each(target, [&](const Json& item) {

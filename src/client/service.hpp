@@ -63,6 +63,8 @@ public:
     /// All `items` of a list, at most `limit`.
     [[nodiscard]] Result<std::vector<Json>> list(std::string_view target, std::size_t limit);
     [[nodiscard]] Result<void> each(std::string_view target, const std::function<bool(const Json&)>& on_item);
+    /// What is there, if it is not JSON.
+    [[nodiscard]] Result<std::string> get_bytes(std::string_view target);
     /// With an Idempotency-Key of its own: a connection that is lost before the answer is opened once more and the
     /// request repeated, and nothing is done twice.
     [[nodiscard]] Result<Json> post(std::string_view target, const Json& body = nullptr);

@@ -26,23 +26,21 @@ Result<ExitCode> show_answer(const TaskOptions& options, const Json& answer) {
     return ExitCode::done;
 }
 
-Result<ExitCode> ask_service(Service& service, const TaskOptions& options, const Arguments& arguments) {
+Result<Json> ask_service(Service& service, const TaskOptions& options, const Arguments& arguments) {
     const Task& task = *options.task;
     if (task.kind == Task::Kind::change) {
         Json body = arguments.json();
         body["what"] = task.name;
-        const auto done = service.post(printer_path(options.printer.printer, "/command"), body);
-        return done ? show_answer(options, *done) : done.error();
+        return service.post(printer_path(options.printer.printer, "/command"), body);
     }
     std::string target = printer_path(options.printer.printer, "/inspect/" + api::url_encoded(task.name));
     for (const auto& [name, text] : options.arguments) {
         target += (target.find('?') == std::string::npos ? "?" : "&") + name + '=' + api::url_encoded(text);
     }
-    const auto seen = service.get(target);
-    return seen ? show_answer(options, *seen) : seen.error();
+    return service.get(target);
 }
 
-Result<ExitCode> ask_printer(const TaskOptions& options, const Arguments& arguments) {
+Result<Json> ask_printer(const TaskOptions& options, const Arguments& arguments) {
     auto meaning = read_error_words(options.printer.direct);
     if (!meaning) {
         return meaning.error();
@@ -51,19 +49,35 @@ Result<ExitCode> ask_printer(const TaskOptions& options, const Arguments& argume
     if (!connected) {
         return connected.error();
     }
-    const auto answer = printer::carry_out(*options.task, **connected, {arguments, *std::move(meaning)});
-    return answer ? show_answer(options, *answer) : answer.error();
+    return printer::carry_out(*options.task, **connected, {arguments, *std::move(meaning)});
 }
 
 std::string question(const TaskOptions& options) {
     std::string words = std::string{options.task->name};
     for (const auto& [name, text] : options.arguments) {
-        words += ' ' + text;
+        constexpr std::size_t longest = 80;
+        words += ' ' + (text.size() > longest ? std::string{"…"} : text);
     }
     return options.printer.printer + ": " + words + " can lose what is in the printer. Do it";
 }
 
 } // namespace
+
+Result<Json> task_answer(const TaskOptions& options) {
+    const auto arguments = Arguments::from_texts(options.task->arguments, options.arguments);
+    if (!arguments) {
+        return arguments.error();
+    }
+    if (is_address(options.printer.printer)) {
+        return ask_printer(options, *arguments);
+    }
+    const auto place = find_service(options.printer.common.service);
+    if (!place) {
+        return place.error();
+    }
+    Service service{*place};
+    return ask_service(service, options, *arguments);
+}
 
 ExitCode run_task(const TaskOptions& options) {
     const bool json = options.printer.common.json;
@@ -79,15 +93,8 @@ ExitCode run_task(const TaskOptions& options) {
                 return yes ? Result<ExitCode>{ExitCode::stopped} : yes.error();
             }
         }
-        if (is_address(options.printer.printer)) {
-            return ask_printer(options, *arguments);
-        }
-        const auto place = find_service(options.printer.common.service);
-        if (!place) {
-            return place.error();
-        }
-        Service service{*place};
-        return ask_service(service, options, *arguments);
+        const auto answer = task_answer(options);
+        return answer ? show_answer(options, *answer) : answer.error();
     });
 }
 

@@ -19,6 +19,9 @@ struct TaskOptions {
     bool yes = false;                                           ///< nobody is asked
 };
 
+/// The answer to the task, over the service or directly. Nobody is asked.
+[[nodiscard]] Result<Json> task_answer(const TaskOptions& options);
+
 /// Asks on the terminal before it does what is destructive.
 [[nodiscard]] ExitCode run_task(const TaskOptions& options);
 

@@ -82,6 +82,11 @@ void check_layout(const LayoutSettings& layout, Context& context) {
             context.refuse(key + ".column_encodings", "column " + in_quotes(column) + " is not among columns");
         }
     }
+    for (const std::string& column : layout.graphics) {
+        if (std::find(layout.columns.begin(), layout.columns.end(), column) == layout.columns.end()) {
+            context.refuse(key + ".graphics", "column " + in_quotes(column) + " is not among columns");
+        }
+    }
 }
 
 void check_addresses(const Settings& settings, Context& context) {

@@ -74,6 +74,8 @@ void visit(V& v, S& s) {
     v.value("skip_bad", s.skip_bad, Flag{});
     v.value("encoding", s.encoding, charsets);
     v.value("column_encodings", s.column_encodings, MapOf<ColumnKey, Choice<protocol::Charset>>{charsets, max_columns});
+    v.value("graphics", s.graphics, ListOf{TextValue{1000, true}, max_columns});
+    v.value("graphics_folder", s.graphics_folder, Maybe{PathValue{}});
     v.value("base", s.base, Whole<std::uint32_t>{0, max_number});
     v.value("mirrored", s.mirrored, Flag{});
     v.value("orientation", s.orientation, Maybe{OrientationValue{}});

@@ -65,6 +65,8 @@ struct LayoutSettings {
     bool skip_bad = false;
     protocol::Charset encoding = protocol::Charset::latin1;
     std::map<std::string, protocol::Charset> column_encodings{}; ///< by column name, instead of `encoding`
+    std::vector<std::string> graphics{};                         ///< columns that are graphics
+    std::optional<std::filesystem::path> graphics_folder{};      ///< where images are; absent = beside the file
     std::uint32_t base = 0;                                      ///< record k has number base + k
     bool mirrored = false;
     std::optional<protocol::Orientation> orientation{};

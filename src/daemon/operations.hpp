@@ -199,6 +199,7 @@ struct ImportRequest {
     std::string printer{};        ///< queue it there; empty = no queue
     bool autostart = false;       ///< may start by itself if its printer's queue does so too
     bool again = false;           ///< import the same content once more, as a new job
+    bool sent = false;            ///< came as a body: what lies beside it belongs to others
 };
 
 struct ImportAnswer {
@@ -270,6 +271,13 @@ struct ServiceMetrics {
     HistogramView ledger_commit;
 };
 
+/// A file that goes to a printer.
+struct PrinterFile {
+    std::string path{};              ///< in the printer
+    std::filesystem::path content{}; ///< a file of ours
+    bool replace = false;            ///< one of that name
+};
+
 /// Any thread but the feed and the store thread; calls may wait for the store. FailureKind::usage = the request is
 /// wrong (unknown name, wrong phase), with what to do instead; ::stopped = it conflicts with what goes on.
 class Operations {
@@ -291,6 +299,9 @@ public:
     /// JSON object, empty = none; so is the answer. Asks the printer, over a connection of its own.
     [[nodiscard]] virtual Result<std::string> inspect(std::string_view printer, std::string_view what,
                                                       std::string_view arguments) = 0;
+
+    /// The content of a file of the printer; empty also if there is none.
+    [[nodiscard]] virtual Result<std::string> read_file(std::string_view printer, std::string_view path) = 0;
 
     [[nodiscard]] virtual Result<std::vector<JobView>> jobs(const JobFilter& filter) = 0;
     [[nodiscard]] virtual Result<std::optional<JobView>> job(spool::JobId id) = 0;
@@ -352,6 +363,9 @@ public:
     /// printer; and nothing that empties the FIFO while the fate of records in it is open.
     [[nodiscard]] virtual Result<std::string> command(const Caller& caller, std::string_view printer,
                                                       std::string_view what, std::string_view arguments) = 0;
+    /// Writes a file of the printer. FailureKind::stopped: it would be replaced, and a job is on the line.
+    [[nodiscard]] virtual Result<void> write_file(const Caller& caller, std::string_view printer,
+                                                  const PrinterFile& file) = 0;
     /// As SIGHUP: what has changed, one line each.
     [[nodiscard]] virtual Result<std::vector<std::string>> reload(const Caller& caller) = 0;
 

@@ -154,6 +154,11 @@ bool Feeder::lacks_value(const protocol::MailStatus& status) {
 /// Only the second of two answers is surely current; a print in progress gets the time to finish, and a flush the time
 /// to be carried out.
 void Feeder::locate_step(Instant now, Actions& out) {
+    const bool stands = status_.machine != MachineState::printing;
+    if (stands && std::exchange(stood_, true)) { // perhaps it is started again before it has been judged
+        note_unfinished();
+        note_restart();
+    }
     if (mail_outstanding_ > 0) {
         mail_reads_ = 0; // an answer to an inquiry from before the stop
         return;
@@ -161,11 +166,6 @@ void Feeder::locate_step(Instant now, Actions& out) {
     if (mail_reads_ < 2) {
         ask(Parameter::SM, now, out);
         return;
-    }
-    const bool stands = status_.machine != MachineState::printing;
-    if (stands) {
-        note_unfinished();
-        note_restart();
     }
     const bool print_in_progress = stands && !mail_.last_print_finished;
     const bool not_flushed = phase_ == Phase::clearing && mail_.entries > 0;
@@ -202,21 +202,23 @@ void Feeder::on_counters(const protocol::Counters& counters, Instant now, Action
     if (phase_ == Phase::ended) {
         return;
     }
-    if (counters.total) {
-        counted(counters.total, now, out);
-    } else {
+    if (!counters.total) {
         counters_lost(now, out); // with a TAB less it is not in its place
+        return;
     }
+    if (polls()) {
+        counters_outstanding_ = std::max(0, counters_outstanding_ - 1);
+        facts_.total_prints = counters.total;
+        print_counters(*counters.total, now, out);
+        return;
+    }
+    counted(counters.total, now, out);
 }
 
 /// `total` is absent if the printer does not tell it.
 void Feeder::counted(std::optional<std::uint32_t> total, Instant now, Actions& out) {
     facts_.total_prints = total;
     counters_outstanding_ = std::max(0, counters_outstanding_ - 1);
-    if (polls()) {
-        print_counters(now, out);
-        return;
-    }
     if (counters_outstanding_ > 0 || mail_reads_ < 2) {
         return; // asked before the printer stood
     }

@@ -4,6 +4,7 @@
 
 #include "base/failure.hpp"
 #include "base/record_number.hpp"
+#include "intake/graphic_fields.hpp"
 #include "intake/row_source.hpp"
 #include "protocol/mail_record.hpp"
 #include "spool/spool.hpp"
@@ -43,6 +44,8 @@ struct ImportOptions {
     std::vector<protocol::Charset> charsets{protocol::Charset::latin1};
     protocol::EscapeMode escapes = protocol::EscapeMode::backslash;
     protocol::RecordProperties properties;
+    /// Which fields are graphics.
+    GraphicOptions graphics{};
     /// Leave bad rows out instead of refusing the import. The records that remain are numbered without gaps.
     bool skip_bad = false;
     /// Asked behind each record: true closes the page although it is not full.

@@ -44,11 +44,26 @@ std::string texts_json(const std::vector<std::string>& texts) {
     return spool::json_array(quoted);
 }
 
+/// The indices of the columns that are graphics. They are sent as they are, whatever the encoding of the others.
+Result<std::vector<std::size_t>> graphic_columns(const std::vector<std::string>& graphics,
+                                                 const std::vector<std::string>& columns) {
+    std::vector<std::size_t> indices;
+    for (const std::string& graphic : graphics) {
+        const auto column = std::find(columns.begin(), columns.end(), graphic);
+        if (column == columns.end()) {
+            return Failure{FailureKind::usage, "--graphic " + graphic + ": no column \"" + graphic + "\" is printed"};
+        }
+        indices.push_back(static_cast<std::size_t>(column - columns.begin()));
+    }
+    return indices;
+}
+
 SourceOptions source_options(const Layout& layout) {
     return {layout.columns, layout.delimiter, layout.header, layout.table, layout.query};
 }
 
-Result<OpenedSource> with_options(Result<std::unique_ptr<RowSource>> source, const Layout& layout) {
+Result<OpenedSource> with_options(Result<std::unique_ptr<RowSource>> source, const std::filesystem::path& beside,
+                                  const Layout& layout) {
     if (!source) {
         return source.error();
     }
@@ -56,12 +71,26 @@ Result<OpenedSource> with_options(Result<std::unique_ptr<RowSource>> source, con
     if (!charsets) {
         return charsets.error();
     }
+    auto graphics = graphic_columns(layout.graphics, (*source)->column_names());
+    if (!graphics) {
+        return graphics.error();
+    }
     OpenedSource opened{std::move(*source), {}};
     opened.options.charsets = *charsets;
+    for (const std::size_t column : *graphics) {
+        opened.options.charsets[column] = protocol::Charset::latin1;
+    }
+    opened.options.graphics = {*std::move(graphics), layout.profile.graphic_height(),
+                               layout.graphics_folder.value_or(beside)};
     opened.options.escapes = layout.profile.escapes;
     opened.options.properties = layout.properties;
     opened.options.skip_bad = layout.skip_bad;
     return opened;
+}
+
+std::filesystem::path folder_of(const std::filesystem::path& file) {
+    const auto parent = file.parent_path();
+    return parent.empty() ? std::filesystem::path{"."} : parent;
 }
 
 } // namespace
@@ -71,6 +100,12 @@ std::string canonical_json(const Layout& layout) {
     spool::JsonObject json;
     json.add_json("columns", texts_json(layout.columns));
     json.add_json("encodings", texts_json(layout.encodings));
+    if (!layout.graphics.empty()) {
+        json.add_json("graphics", texts_json(layout.graphics));
+        if (layout.graphics_folder) {
+            json.add("graphics_folder", layout.graphics_folder->string());
+        }
+    }
     json.add("profile", layout.profile.name);
     if (layout.table) {
         json.add("table", *layout.table);
@@ -91,13 +126,14 @@ std::string canonical_json(const Layout& layout) {
 }
 
 Result<OpenedSource> open_with_layout(const std::filesystem::path& file, const Layout& layout) {
-    return with_options(open_source(file, source_options(layout)), layout);
+    return with_options(open_source(file, source_options(layout)), folder_of(file), layout);
 }
 
 Result<OpenedSource> open_with_layout(FileInput file, const Layout& layout) {
     SourceOptions options = source_options(layout);
     options.follow_links = false;
-    return with_options(open_source(std::move(file), options), layout);
+    const std::filesystem::path beside = folder_of(file.path());
+    return with_options(open_source(std::move(file), options), beside, layout);
 }
 
 } // namespace linefeed::intake

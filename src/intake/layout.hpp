@@ -11,6 +11,7 @@
 #include "protocol/profile.hpp"
 
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -29,6 +30,9 @@ struct Layout {
 
     // The record
     std::vector<std::string> encodings; ///< "latin1" for all columns, or "COLUMN=unicode-hex" for one
+    std::vector<std::string> graphics;  ///< columns that are graphics, see GraphicFields
+    /// Where their images are; absent = beside the source, empty = nowhere.
+    std::optional<std::filesystem::path> graphics_folder;
     protocol::Profile profile = protocol::profiles.front();
     std::uint32_t base = 0; ///< record k has number base + k
     protocol::RecordProperties properties;
@@ -44,7 +48,7 @@ struct OpenedSource {
 };
 
 /// Opens a source in the way that `layout` says. Fails as open_source(), and with FailureKind::usage if an encoding is
-/// not known or names a column that is not printed.
+/// not known, or it or a graphic names a column that is not printed.
 [[nodiscard]] Result<OpenedSource> open_with_layout(const std::filesystem::path& file, const Layout& layout);
 /// The same for a file that is open already. An SQLite database is opened once more by its path, which must hold no
 /// symbolic link then.

@@ -31,6 +31,7 @@ PageMaker::PageMaker(RowSource& source, RecordNumber base, const ImportOptions& 
     , base_(base)
     , options_(options)
     , encoder_(options.charsets, options.escapes, options.properties)
+    , graphics_(options.graphics)
     , report_(empty_report(source, options)) {}
 
 void PageMaker::report_bad(std::uint64_t line, std::string column, std::string reason) {
@@ -40,7 +41,7 @@ void PageMaker::report_bad(std::uint64_t line, std::string column, std::string r
     }
 }
 
-Result<void> PageMaker::take(const Row& row, RecordPage& page) {
+Result<void> PageMaker::take(Row& row, RecordPage& page) {
     ++report_.rows;
     if (!row.problem.empty()) {
         report_bad(row.line, row.problem_column, row.problem);
@@ -49,6 +50,10 @@ Result<void> PageMaker::take(const Row& row, RecordPage& page) {
     if (base_.value() + report_.records >= RecordNumber::max().value()) {
         return Failure{FailureKind::input, "row " + std::to_string(report_.rows) +
                                                " has no number any more: record numbers end at 4294967295"};
+    }
+    if (const auto problem = graphics_.apply(row.fields)) {
+        report_bad(row.line, source_.column_names()[problem->column], problem->reason);
+        return {};
     }
     const RecordNumber number = base_ + RecordCount{report_.records + 1};
     if (page.ends.empty()) {

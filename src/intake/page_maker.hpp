@@ -24,7 +24,7 @@ public:
     [[nodiscard]] const ImportReport& report() const { return report_; }
 
 private:
-    [[nodiscard]] Result<void> take(const Row& row, RecordPage& page);
+    [[nodiscard]] Result<void> take(Row& row, RecordPage& page);
     void report_bad(std::uint64_t line, std::string column, std::string reason);
     [[nodiscard]] bool is_full(const RecordPage& page) const;
 
@@ -32,6 +32,7 @@ private:
     RecordNumber base_;
     ImportOptions options_;
     protocol::MailRecordEncoder encoder_;
+    GraphicFields graphics_;
     Row row_;
     bool ended_ = false;
     ImportReport report_;

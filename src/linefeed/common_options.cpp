@@ -81,6 +81,13 @@ void add_layout(CLI::App& command, intake::Layout& layout, RawLayout& raw) {
                     "one column")
         ->allow_extra_args(false)
         ->delimiter(',');
+    command
+        .add_option("--graphic", layout.graphics,
+                    "Column whose fields are graphics: (height width hex), or the name of a PNG or PBM image of two "
+                    "colours")
+        ->allow_extra_args(false)
+        ->delimiter(',');
+    command.add_option("--graphics-folder", raw.graphics_folder, "Where these images are; default: where the file is");
     command.add_option("--profile", raw.profile, "Firmware profile: " + profile_names())->capture_default_str();
     command.add_option("--base", layout.base, "Record k has number BASE + k")->capture_default_str();
     command.add_flag("--mirrored", layout.properties.mirrored, "Print every record mirrored");
@@ -90,6 +97,9 @@ void add_layout(CLI::App& command, intake::Layout& layout, RawLayout& raw) {
 
 std::string finish_layout(intake::Layout& layout, const RawLayout& raw) {
     layout.header = !raw.no_header;
+    if (!raw.graphics_folder.empty()) {
+        layout.graphics_folder = std::filesystem::absolute(raw.graphics_folder).lexically_normal();
+    }
     if (raw.delimiter == "tab" || raw.delimiter == "\\t") {
         layout.delimiter = '\t';
     } else if (raw.delimiter.size() == 1) {

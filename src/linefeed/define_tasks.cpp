@@ -209,13 +209,15 @@ void add_task(CLI::App& printer, Commands& commands, const std::shared_ptr<clien
 void define_tasks(CLI::App& printer, Commands& commands, const std::shared_ptr<client::PrinterOptions>& options) {
     Commands all;
     for (const Task& task : printer::tasks()) {
-        const bool defined_by_hand = task.name == "acknowledge" || task.name == "suspend" || task.name == "release";
+        const bool defined_by_hand = task.name == "acknowledge" || task.name == "suspend" || task.name == "release" ||
+                                     task.name == "preview" || task.name.starts_with("script ");
         if (!task.options_of_look && !defined_by_hand) {
             add_task(printer, all, options, task);
         }
     }
     add_monitor(printer, all, options);
     add_replay(printer, all, options);
+    define_files(printer, all, options);
     describe_groups(printer);
     // A command that stands below another comes first: that other one is parsed too.
     std::ranges::stable_sort(all, [](const Command& a, const Command& b) {

@@ -37,6 +37,8 @@ void define_job_changes(CLI::App& app, Commands& commands);
 void define_starts(CLI::App& app, Commands& commands);
 /// What `linefeed printer P` has: every task, monitor, record, replay.
 void define_tasks(CLI::App& printer, Commands& commands, const std::shared_ptr<client::PrinterOptions>& options);
+/// files get and put, backup, restore, script, preview
+void define_files(CLI::App& printer, Commands& commands, const std::shared_ptr<client::PrinterOptions>& options);
 /// printers, printer, stop
 void define_printers(CLI::App& app, Commands& commands);
 /// status, watch, events, folders, audit, reload
@@ -69,6 +71,7 @@ struct RawLayout {
     std::string profile{protocol::profiles.front().name};
     bool no_header = false;
     std::optional<int> orientation;
+    std::string graphics_folder;
 };
 /// The options that decide which records a file gives: the same for every command that reads files.
 void add_layout(CLI::App& command, intake::Layout& layout, RawLayout& raw);

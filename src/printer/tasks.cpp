@@ -47,7 +47,7 @@ Result<void> check_not_printing(const Task& task, PrinterClient& printer) {
 } // namespace
 
 std::span<const Task> tasks() {
-    static const std::vector<Task> all = joined(std::array{look_tasks(), change_tasks(), raw_tasks()});
+    static const std::vector<Task> all = joined(std::array{look_tasks(), change_tasks(), file_tasks(), raw_tasks()});
     return all;
 }
 

@@ -18,6 +18,8 @@ intake::Layout layout_of(const config::LayoutSettings& settings, const protocol:
     for (const auto& [column, charset] : settings.column_encodings) {
         layout.encodings.push_back(column + '=' + std::string{protocol::to_string(charset)});
     }
+    layout.graphics = settings.graphics;
+    layout.graphics_folder = settings.graphics_folder;
     layout.profile = profile;
     layout.base = settings.base;
     layout.properties = settings.properties();
@@ -62,6 +64,9 @@ intake::DropSettings drop_settings(const config::FolderSettings& folder, const c
     drop.rescan = folder.poll_interval;
     drop.layout = layout_of(*layout, printer->profile);
     drop.refuse_grown = folder.grown_files == config::GrownFiles::refuse;
+    if (!drop.layout.graphics_folder) {
+        drop.layout.graphics_folder = folder.path; // a file that is being read lies in a folder of its own
+    }
     return drop;
 }
 

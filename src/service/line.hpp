@@ -100,6 +100,9 @@ public:
     /// start.
     [[nodiscard]] Result<std::string> carry_out(const printer::Task& task, std::string_view arguments,
                                                 const std::function<Result<void>()>& check);
+    /// A conversation of its own with the printer. `alone`: refused while a job is on the line, and no job starts
+    /// meanwhile.
+    [[nodiscard]] Result<void> talk(bool alone, const std::function<Result<void>(printer::PrinterClient&)>& words);
     /// Holds the panel for so long from now, or releases it.
     [[nodiscard]] Result<void> hold_panel(std::optional<Duration> time);
     [[nodiscard]] const std::string& printer() const { return printer_; }
@@ -115,7 +118,7 @@ private:
                std::optional<RecordNumber> record = {});
 
     // line_printer.cpp: the printer besides printing
-    [[nodiscard]] Result<void> reserve();
+    [[nodiscard]] Result<std::shared_ptr<void>> reserve();
     [[nodiscard]] Result<printer::ClientSettings> client_settings() const;
     [[nodiscard]] std::vector<daemon::Finding> look_at_printer(const printer::ClientSettings& client,
                                                                bool may_be_printing);

@@ -85,16 +85,11 @@ Result<std::string> Line::carry_out(const printer::Task& task, std::string_view 
     }
     std::shared_ptr<void> reservation;
     if (*danger != printer::Danger::none) {
-        if (auto reserved = reserve(); !reserved) {
+        auto reserved = reserve();
+        if (!reserved) {
             return reserved.error();
         }
-        reservation = {this, [](Line* line) {
-                           {
-                               const std::lock_guard lock{line->mutex_};
-                               --line->reserved_;
-                           }
-                           line->changed_.notify_all();
-                       }};
+        reservation = *std::move(reserved);
     }
     if (*empties) {
         if (auto checked = check(); !checked) {
@@ -113,15 +108,31 @@ Result<std::string> Line::carry_out(const printer::Task& task, std::string_view 
     return printer::carry_out_as_text(task, **connected, {std::move(*read), meaning});
 }
 
-/// Before a command that no job may meet.
-Result<void> Line::reserve() {
+Result<void> Line::talk(bool alone, const std::function<Result<void>(printer::PrinterClient&)>& words) {
+    const auto client = client_settings();
+    const auto reservation = alone ? reserve() : Result<std::shared_ptr<void>>{nullptr};
+    if (!client || !reservation) {
+        return client ? reservation.error() : client.error();
+    }
+    const auto connected = printer::PrinterClient::connect(*client);
+    return connected ? words(**connected) : connected.error();
+}
+
+/// Before what no job may meet; until the reservation goes.
+Result<std::shared_ptr<void>> Line::reserve() {
     const std::lock_guard lock{mutex_};
     if (active_) {
         return Failure{FailureKind::stopped, name_of(*active_) + " is on printer " + printer_ +
                                                  ": stop it first (linefeed stop " + printer_ + ")"};
     }
     ++reserved_;
-    return {};
+    return std::shared_ptr<void>{this, [](Line* line) {
+                                     {
+                                         const std::lock_guard inner{line->mutex_};
+                                         --line->reserved_;
+                                     }
+                                     line->changed_.notify_all();
+                                 }};
 }
 
 Result<void> Line::accept(const std::string& serial_number) {

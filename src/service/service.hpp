@@ -116,6 +116,9 @@ public:
                                               const std::string& serial_number) override;
     [[nodiscard]] Result<void> suspend_panel(const daemon::Caller& caller, std::string_view printer, bool suspend,
                                              Duration hold) override;
+    [[nodiscard]] Result<std::string> read_file(std::string_view printer, std::string_view path) override;
+    [[nodiscard]] Result<void> write_file(const daemon::Caller& caller, std::string_view printer,
+                                          const daemon::PrinterFile& file) override;
     [[nodiscard]] Result<std::string> inspect(std::string_view printer, std::string_view what,
                                               std::string_view arguments) override;
     [[nodiscard]] Result<std::string> command(const daemon::Caller& caller, std::string_view printer,

@@ -1,5 +1,8 @@
 // What is asked of a printer besides printing.
 #include "daemon/job_run.hpp"
+#include "printer/file_transfer.hpp"
+#include "printer/local_file.hpp"
+#include "printer/printer_path.hpp"
 #include "printer/tasks.hpp"
 #include "service/service.hpp"
 
@@ -48,6 +51,44 @@ Result<void> Service::suspend_panel(const daemon::Caller& caller, std::string_vi
             return line.error();
         }
         return (*line)->hold_panel(suspend ? std::optional{hold} : std::nullopt);
+    });
+}
+
+Result<std::string> Service::read_file(std::string_view printer, std::string_view path) {
+    const auto line = known_line(printer);
+    if (!line) {
+        return line.error();
+    }
+    std::string bytes;
+    const auto read = (*line)->talk(false, [&](printer::PrinterClient& client) -> Result<void> {
+        const auto file = printer::printer_file(path, client.settings().escapes);
+        auto got = file ? printer::download(client, *file) : file.error();
+        if (!got) {
+            return got.error();
+        }
+        bytes = *std::move(got);
+        return {};
+    });
+    return read ? Result<std::string>{std::move(bytes)} : read.error();
+}
+
+Result<void> Service::write_file(const daemon::Caller& caller, std::string_view printer,
+                                 const daemon::PrinterFile& file) {
+    const auto bytes = printer::read_file(file.content, printer::max_file_bytes);
+    if (!bytes) {
+        return bytes.error();
+    }
+    const Act act{"write file", "printer " + std::string{printer},
+                  spool::JsonObject{}.add("path", file.path).add("sha256", printer::sha256_hex(*bytes))};
+    return audited(caller, act, [&]() -> Result<void> {
+        const auto line = known_line(printer);
+        if (!line) {
+            return line.error();
+        }
+        return (*line)->talk(file.replace, [&](printer::PrinterClient& client) -> Result<void> {
+            const auto path = printer::printer_file(file.path, client.settings().escapes);
+            return path ? printer::put_file(client, *path, *bytes, file.replace) : path.error();
+        });
     });
 }
 

@@ -215,9 +215,14 @@ class Scripts(TestCase):
             self.assertTrue(os.access(file, os.X_OK), file)
 
 
+def typed(*command):
+    """The words with a printer's name where one has to stand before more commands."""
+    return (*command[:1], "line1", *command[1:]) if command[:1] == ("printer",) and len(command) > 1 else command
+
+
 def options(program, *command):
     """Every option that --help of the program, or of a command, shows."""
-    code, output = run(BUILD / "bin" / program, *command, "--help")
+    code, output = run(BUILD / "bin" / program, *typed(*command), "--help")
     if code != 0:
         raise AssertionError(f"{program} {command}: {output}")
     return {name for names in re.findall(r"(?m)^ {2}(-\S*)", output) for name in names.split(",")}
@@ -230,7 +235,7 @@ def all_options(program, *command):
 
 def commands(program, *command):
     """Its subcommands, as --help shows them."""
-    _, output = run(BUILD / "bin" / program, *command, "--help")
+    _, output = run(BUILD / "bin" / program, *typed(*command), "--help")
     found = re.search(r"(?ms)^Subcommands:\n(.*?)(\n\n|\Z)", output)
     return re.findall(r"(?m)^  ([a-z][a-z-]*)", found.group(1)) if found else []
 
@@ -256,7 +261,7 @@ class Completion(Installed):
 
     def offers_options(self, *path):
         for command in commands("linefeed", *path):
-            self.assertEqual(options("linefeed", *path, command), self.complete("linefeed", *path, command, "-"), (*path, command))
+            self.assertEqual(options("linefeed", *path, command), self.complete("linefeed", *typed(*path, command), "-"), (*path, command))
             self.offers_options(*path, command)
 
     def test_offers_values_and_files(self):

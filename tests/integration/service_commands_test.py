@@ -219,7 +219,7 @@ class ServiceCommands(ServiceTest):
         self.assertTrue(any("=MR" in frame["text"] for frame in self.done("printer", "line1", "frames", "-o", "json").json()))
         self.assertIn("->", self.done("printer", "line1", "frames").out)
         self.refused(4, "printer", "line1", "acknowledge", 10202, words=("10202", "no error"))
-        self.refused(2, "printer", "line1", "acknowledge", words=("ERROR",))
+        self.refused(4, "printer", "line1", "acknowledge", words=("no error",))
         self.done("printer", "line1", "suspend", "--hold", 30)
         self.assertTrue(self.done("printer", "line1", "-o", "json").json()["panel_suspended"])
         self.done("printer", "line1", "release")

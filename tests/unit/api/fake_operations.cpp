@@ -408,6 +408,21 @@ Result<std::string> FakeOperations::inspect(std::string_view printer, std::strin
     return R"({"what":")" + std::string{what} + R"(","arguments":)" + std::string{arguments} + '}';
 }
 
+Result<std::string> FakeOperations::read_file(std::string_view printer, std::string_view path) {
+    const auto known = check_printer(printer);
+    return known ? Result<std::string>{"content of " + std::string{path}} : known.error();
+}
+
+Result<void> FakeOperations::write_file(const Caller& caller, std::string_view printer,
+                                        const daemon::PrinterFile& file) {
+    const auto known = check_printer(printer);
+    return known ? change(caller, "write file",
+                          std::string{printer} + ' ' + file.path + ' ' +
+                              std::to_string(std::filesystem::file_size(file.content)) +
+                              (file.replace ? " replaced" : ""))
+                 : known.error();
+}
+
 Result<std::string> FakeOperations::command(const Caller& caller, std::string_view printer, std::string_view what,
                                             std::string_view arguments) {
     const auto known = check_printer(printer);

@@ -92,7 +92,7 @@ TEST(OpenApi, SaysOfEachRouteWhatTheTableSays) {
         EXPECT_EQ(key_required, route.key == Key::none ? std::nullopt : std::optional{route.key == Key::required});
         EXPECT_EQ(operation["requestBody"].IsDefined(), route.body != Body::none);
         const bool required = operation["requestBody"].IsDefined() && operation["requestBody"]["required"].as<bool>();
-        EXPECT_EQ(required, route.body == Body::json || route.body == Body::import);
+        EXPECT_EQ(required, route.body == Body::json || route.body == Body::import || route.body == Body::file);
         for (const auto& response : operation["responses"]) {
             if (response.first.as<std::string>() != "default") {
                 const std::string_view produces = route.produces.substr(0, route.produces.find(';'));

@@ -38,10 +38,11 @@ class Schemas(unittest.TestCase):
 
     BODIES = {
         "printerStart": {"job": 12}, "printerAcknowledge": {"error": 1223}, "printerAccept": {"serial_number": "104711"}, "printerSuspend": {"suspend": True},
+        "printerCommand": {"what": "outputs set", "output": 3, "state": "on"},
         "jobQueue": {"printer": "line1"}, "jobReprint": {"records": "1-5", "reason": "smudged"},
         "jobSettle": {"last_printed": "17"}, "import": {"file": "/etc/hostname"},
     }
-    QUERIES = {"readyz": "?verbose", "printerFrames": "?error=true", "jobs": "?limit=2&phase=queued,finished,in_doubt",
+    QUERIES = {"readyz": "?verbose", "printerFrames": "?error=true", "printerInspect": "?type=1", "jobs": "?limit=2&phase=queued,finished,in_doubt",
                "jobLedger": "?records=5-400&limit=3", "jobLedgerRows": "?limit=3", "jobRecords": "?records=3-9&limit=2", "events": "?limit=1", "audit": "?limit=2"}
 
     @classmethod
@@ -64,7 +65,7 @@ class Schemas(unittest.TestCase):
         for path, item in self.openapi["paths"].items():
             for method in ("get", "post"):
                 if method in item and item[method]["operationId"] != "eventStream":
-                    yield path.replace("{printer}", "line1").replace("{job}", "12"), method.upper(), item[method]
+                    yield path.replace("{printer}", "line1").replace("{job}", "12").replace("{what}", "parameter"), method.upper(), item[method]
 
     def test_every_route_answers_as_its_schema_says(self):
         with Service() as service:
@@ -108,6 +109,18 @@ class Schemas(unittest.TestCase):
             for path in ("/api/v1/jobs/0", "/api/v1/jobs/x", "/api/v1/jobs/-1", "/api/v1/jobs/99999999999999999999",
                          "/nothing", "/api/v1/jobs/", "/api/v1/jobs/1/2", "/api/v1//jobs", "/api/v1/printers/a%2fb"):
                 self.assertEqual(service.ask("GET", path).problem, "not-found", path)
+
+    def test_looks_and_commands_carry_their_arguments(self):
+        with Service() as service:
+            for target, arguments in (("parameter?type=1", {"type": "1"}), ("query?code=PR&argument=1", {"code": "PR", "argument": "1"}), ("status", {})):
+                seen = service.ask("GET", f"/api/v1/printers/line1/inspect/{target}")
+                self.assertEqual((200, arguments), (seen.status, seen.json["arguments"]), seen.body)
+            for target, status in (("status?type=1", 422), ("query", 422), ("status?other=1", 400), ("", 404), ("a/b", 404)):
+                self.assertEqual(status, service.ask("GET", f"/api/v1/printers/line1/inspect/{target}").status, target)
+            done = service.ask("POST", "/api/v1/printers/line1/command", {"what": "outputs set", "output": 3, "state": "on"})
+            self.assertEqual({"what": "outputs set", "arguments": {"output": 3, "state": "on"}}, done.json)
+            for body in ({}, {"what": 1}, {"what": ""}):
+                self.assertEqual(422, service.ask("POST", "/api/v1/printers/line1/command", body).status)
 
     def test_the_document_that_is_served_is_the_file(self):
         with Service() as service:
@@ -508,6 +521,12 @@ class Uploads(unittest.TestCase):
     def left(self, service):
         return list((service.path / "uploads").iterdir())
 
+    def assert_nothing_is_left(self, service):
+        deadline = time.monotonic() + 10
+        while self.left(service) and time.monotonic() < deadline:
+            time.sleep(0.01)
+        self.assertEqual(self.left(service), [])
+
     def test_a_file_becomes_a_job_and_nothing_stays(self):
         with Service(tokens=TOKENS) as service:
             content = b"name\r\n" + b"a\r\n" * 2_000_000
@@ -548,7 +567,7 @@ class Uploads(unittest.TestCase):
                 answer = read_all(raw)
                 self.assertIn(b" 413 ", answer)
             self.assertEqual(service.changes(), 0)
-            self.assertEqual(self.left(service), [])
+            self.assert_nothing_is_left(service)
 
     def test_a_client_that_goes_away_leaves_nothing(self):
         with Service() as service:
@@ -559,10 +578,7 @@ class Uploads(unittest.TestCase):
                     time.sleep(0.01)
                 self.assertEqual(len(self.left(service)), 1)
                 self.assertEqual(stat.S_IMODE(self.left(service)[0].stat().st_mode), 0o600)
-            deadline = time.monotonic() + 10
-            while self.left(service) and time.monotonic() < deadline:
-                time.sleep(0.01)
-            self.assertEqual(self.left(service), [])
+            self.assert_nothing_is_left(service)
             self.assertEqual(service.changes(), 0)
 
     def test_what_a_killed_service_left_is_removed(self):

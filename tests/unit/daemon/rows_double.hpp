@@ -24,6 +24,12 @@ public:
     void end() { finish({}); }
     void break_off(const std::string& why) { finish(Failure{FailureKind::input, why}); }
 
+    /// Blocks until so many rows, which have been given, are read.
+    void wait_until_read(std::size_t count) {
+        std::unique_lock lock{mutex_};
+        changed_.wait(lock, [&] { return read_ >= count; });
+    }
+
     /// To be read by one thread; the double must outlive it.
     [[nodiscard]] std::unique_ptr<intake::RowSource> source() { return std::make_unique<Source>(*this); }
 
@@ -40,6 +46,8 @@ private:
                 return rows_.failure_ ? Result<bool>{*rows_.failure_} : Result<bool>{false};
             }
             row.problem = rows_.problems_[at_++];
+            rows_.read_ = at_;
+            rows_.changed_.notify_all();
             row.line = at_;
             text_ = "row " + std::to_string(at_);
             row.fields = row.problem.empty() ? std::vector<std::string_view>{text_} : std::vector<std::string_view>{};
@@ -66,6 +74,7 @@ private:
     std::mutex mutex_;
     std::condition_variable changed_;
     std::vector<std::string> problems_;
+    std::size_t read_ = 0;
     std::optional<Failure> failure_;
     bool over_ = false;
 };

@@ -6,7 +6,9 @@
 
 #include <algorithm>
 #include <array>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace linefeed::protocol {
@@ -101,6 +103,42 @@ TEST(EveryCommand, shouldTolerateExcessParameters) {
         const std::string longer =
             std::string{frame.substr(0, frame.size() - 1)} + (frame.starts_with("^0=SM") ? "\t\t99" : "\t") + "\tnew\r";
         EXPECT_EQ(parsed(longer), parsed(frame)) << longer;
+    }
+}
+
+/// Parameters that carry nothing, by code and place from 1 (protocol, section 4).
+const std::set<std::pair<std::string, std::size_t>> reserved{{"EX", 7}, {"EX", 8}, {"EX", 9}, {"MC", 3},
+                                                             {"MC", 4}, {"MC", 5}, {"MC", 8}, {"MS", 11}};
+
+/// The frame with another text from `begin` to `end`, one that can be read and says something else; empty if there is
+/// none.
+std::string with_another_value(std::string_view frame, std::size_t begin, std::size_t end) {
+    const Message message = parsed(frame);
+    const std::string own{frame.substr(begin, end - begin)};
+    for (const std::string& other : {std::string{"0"}, std::string{"1"}, std::string{"2"}, own + "1", own + "a",
+                                     own + "AB", std::string{"25-01-02 03:04:05"}}) {
+        const std::string changed = std::string{frame.substr(0, begin)} + other + std::string{frame.substr(end)};
+        const Message other_message = parsed(changed);
+        if (other_message.index() == message.index() && other_message != message) {
+            EXPECT_EQ(parsed(encoded(other_message)), other_message) << changed;
+            return changed;
+        }
+    }
+    return {};
+}
+
+TEST(EveryCommand, shouldKeepEachParameterInAFieldOfItsOwn) {
+    for (const std::string_view frame : frames) {
+        const std::string code{frame.substr(3, 2)};
+        const bool of_entries = frame.starts_with("^0=EL") || frame.starts_with("^0=EV");
+        const std::string_view separators = frame[2] == '*' ? "\r" : of_entries ? "\t/\r" : "\t\r";
+        std::size_t place = 1;
+        for (std::size_t begin = frame[2] == '*' ? 3 : 5; begin < frame.size(); ++place) {
+            const std::size_t end = frame.find_first_of(separators, begin);
+            const std::string changed = with_another_value(frame, begin, end);
+            EXPECT_EQ(changed.empty(), reserved.contains({code, place})) << frame << " parameter " << place;
+            begin = end + 1;
+        }
     }
 }
 

@@ -190,6 +190,15 @@ TEST(Messages, shouldNotTrustTheBeginningOfAnOverlongFrame) {
     EXPECT_EQ(reason("^0*LINE" + excess + "\r"), "*LI: the frame is longer than any that is known");
 }
 
+TEST(Messages, shouldWriteWhatCannotBeReadAsItCame) {
+    for (const char* const frame : {"^0=SMx\r", "^0$FT1\t0\tZ\r", "^0?XX\tand more\r"}) {
+        EXPECT_EQ(rewritten(frame), frame);
+    }
+    EXPECT_EQ(parsed("^0=SMx\r"), parsed("^0=SMx\r"));
+    EXPECT_NE(parsed("^0=SMx\r"), parsed("^0=SMy\r"));
+    EXPECT_NE(parsed("^0=XXx\r"), parsed("^0!XXx\r"));
+}
+
 TEST(Messages, shouldSayStatesInWords) {
     EXPECT_EQ(to_string(NozzleState::invalid), "invalid");
     EXPECT_EQ(to_string(NozzleState::opens), "opens");

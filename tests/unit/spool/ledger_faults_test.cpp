@@ -51,8 +51,9 @@ protected:
         } else {
             return false;
         }
-        if (!keep(spool->jobs_with_open_records()) || !keep(spool->last_run(job)) ||
-            !keep(spool->ledger_rows(job, 0, 10)) || !keep(spool->ledger_state(other_job)) ||
+        if (!keep(spool->last_ledger_row(job)) || !keep(spool->jobs_with_open_records()) ||
+            !keep(spool->last_run(job)) || !keep(spool->ledger_rows(job, 0, 10)) ||
+            !keep(spool->doubt_rows(job, run)) || !keep(spool->ledger_state(other_job)) ||
             !keep_append(run, LedgerKind::printed, range(1, 10)) ||
             !keep_append(run, LedgerKind::released, range(12, 12)) ||
             !keep_append(run, LedgerKind::run_ended, RecordRange{})) {

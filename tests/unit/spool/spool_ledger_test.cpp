@@ -56,6 +56,27 @@ TEST_F(SpoolLedgerTest, shouldKeepRowsInOrderWithTimeAndEvidence) {
     }
 }
 
+TEST_F(SpoolLedgerTest, shouldFindTheDoubtOfARunBehindItsBeginning) {
+    const auto append_doubt = [this](RunId run, std::uint32_t from, std::uint32_t to) {
+        ASSERT_TRUE(append(*spool, job.id,
+                           {{LedgerKind::intent, run, range(from, to), ""},
+                            {LedgerKind::printed, run, range(from, from), ""},
+                            {LedgerKind::in_doubt, run, range(from + 1, to), R"({"sm":3})"}}));
+    };
+    EXPECT_EQ(spool->last_ledger_row(job.id).value(), 0);
+    const RunId first = begin_run();
+    append_doubt(first, 1, 10);
+    const RunId second = spool->begin_run(job.id, range(11, 100), "{}").value();
+    append_doubt(second, 11, 20);
+    const auto rows = spool->doubt_rows(job.id, second).value();
+    ASSERT_EQ(rows.size(), 2U);
+    EXPECT_EQ(rows[0].entry.kind, LedgerKind::run_started);
+    EXPECT_EQ(rows[0].entry.run, second);
+    EXPECT_EQ(rows[1].entry, (LedgerEntry{LedgerKind::in_doubt, second, range(12, 20), R"({"sm":3})"}));
+    EXPECT_EQ(spool->last_ledger_row(job.id).value(), rows[1].sequence);
+    EXPECT_EQ(spool->last_ledger_row(make_job(*spool, 5).id).value(), 0) << "of that job only";
+}
+
 TEST_F(SpoolLedgerTest, shouldReadRowsInPortions) {
     const RunId run = begin_run();
     for (std::uint32_t number = 1; number <= 5; ++number) {

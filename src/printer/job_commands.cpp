@@ -1,0 +1,159 @@
+#include "printer/job_commands.hpp"
+
+#include "printer/file_transfer.hpp"
+#include "printer/printer_path.hpp"
+#include "protocol/frame.hpp"
+
+#include <algorithm>
+#include <thread>
+
+namespace linefeed::printer {
+
+using protocol::Message;
+using protocol::Parameter;
+using protocol::ScriptLine;
+using Clock = std::chrono::steady_clock;
+using Heard = PrinterClient::Heard;
+
+namespace {
+
+constexpr auto loading = std::chrono::milliseconds{150}; ///< takes no longer, says the manual
+constexpr auto look_again = std::chrono::milliseconds{50};
+/// With escapes a line may become twice as long.
+constexpr std::size_t max_line = protocol::max_frame_bytes / 2 - 8;
+constexpr std::size_t max_lines = 100'000;
+
+Failure no_answer(const PrinterClient& printer, const std::string& what) {
+    return {FailureKind::unreachable, printer.settings().address + ": the printer does not answer " + what};
+}
+
+/// The name that `?JL` tells when it is `path`, or after `patience`. Where the job was loaded before, the printer tells
+/// its name at once: so it is given the time that loading takes.
+Result<std::string> wait_for_job(PrinterClient& printer, const std::string& path, Duration patience) {
+    const auto deadline = Clock::now() + patience;
+    std::this_thread::sleep_for(loading);
+    while (true) {
+        const auto job = printer.ask<protocol::JobName>(Parameter::JL);
+        if (!job) {
+            return no_answer(printer, "?JL");
+        }
+        if (same_path(job->path, path)) {
+            return job->path;
+        }
+        if (Clock::now() >= deadline) {
+            return Failure{FailureKind::stopped,
+                           "the printer has not loaded " + path_text(path) + ": its job is " + path_text(job->path)};
+        }
+        std::this_thread::sleep_for(look_again);
+    }
+}
+
+} // namespace
+
+Result<void> check_not_printing(PrinterClient& printer) {
+    const auto status = printer.ask<protocol::MachineStatus>(Parameter::RS);
+    if (!status) {
+        return no_answer(printer, "?RS");
+    }
+    if (status->machine == protocol::MachineState::printing) {
+        return Failure{FailureKind::stopped, printer.settings().address + ": it is print-ready: stop the line first"};
+    }
+    return {};
+}
+
+Result<std::string> load_job(PrinterClient& printer, const std::string& path, Duration patience) {
+    if (auto checked = check_not_printing(printer); !checked) {
+        return checked.error();
+    }
+    const auto there = list_files(printer, path);
+    if (!there) {
+        return there.error();
+    }
+    if (there->empty() || there->front().is_directory) {
+        return Failure{FailureKind::input, path_text(path) + ": there is no such job"};
+    }
+    printer.send(Message{protocol::JobName{path}});
+    return wait_for_job(printer, path, patience);
+}
+
+Result<std::vector<std::string>> read_script(PrinterClient& printer) {
+    std::vector<std::string> lines;
+    bool begun = false;
+    const bool complete = printer.converse(printer.frame_of(protocol::InquiryMessage{Parameter::JB, {}}),
+                                           [&](const Message& message, std::string_view) {
+                                               const auto* const line = std::get_if<ScriptLine>(&message);
+                                               if (line == nullptr) {
+                                                   return Heard::ignored;
+                                               }
+                                               if (line->is_end()) {
+                                                   return Heard::done;
+                                               }
+                                               if (line->is_begin()) {
+                                                   begun = true;
+                                                   lines.clear();
+                                               } else if (lines.size() < max_lines) {
+                                                   lines.push_back(line->text);
+                                               }
+                                               return Heard::more;
+                                           });
+    if (!complete) {
+        return begun ? Failure{FailureKind::unreachable, printer.settings().address + ": the script ends early"}
+                     : no_answer(printer, "?JB");
+    }
+    return lines;
+}
+
+Result<std::vector<std::string>> script_lines(std::string_view text, protocol::EscapeMode escapes) {
+    std::vector<std::string> lines;
+    const auto refused = [](std::size_t number, const std::string& why) {
+        return Failure{FailureKind::input, "line " + std::to_string(number) + " of the script " + why};
+    };
+    bool ended = false;
+    for (std::size_t number = 1; !text.empty(); ++number) {
+        const std::size_t end = std::min(text.find_first_of("\r\n"), text.size());
+        const ScriptLine line{std::string{text.substr(0, end)}};
+        text.remove_prefix(std::min(text.size(), end + (text.substr(end).starts_with("\r\n") ? 2 : 1)));
+        if (line.text.empty()) {
+            continue;
+        }
+        if (ended || (line.is_begin() && !lines.empty())) {
+            return refused(number, "has no place there: one script begins and ends once");
+        }
+        if (line.text.size() > max_line) {
+            return refused(number, "is longer than " + std::to_string(max_line) + " bytes");
+        }
+        if (line.text.find('\0') != std::string::npos) {
+            return refused(number, "has a NUL");
+        }
+        if (escapes == protocol::EscapeMode::none && line.text.find_first_of("^\\") != std::string::npos) {
+            return refused(number, "has ^ or \\, which firmware without escapes cannot be told");
+        }
+        ended = line.is_end();
+        if (!line.is_begin() && !ended) {
+            lines.push_back(line.text);
+        }
+    }
+    if (lines.empty() || lines.size() > max_lines) {
+        return Failure{FailureKind::input, lines.empty() ? "the script has no line" : "the script has too many lines"};
+    }
+    return lines;
+}
+
+Result<ScriptSent> send_script(PrinterClient& printer, const std::vector<std::string>& lines, Duration patience) {
+    if (auto checked = check_not_printing(printer); !checked) {
+        return checked.error();
+    }
+    printer.send(Message{ScriptLine{"BEGINLJSCRIPT"}});
+    for (const std::string& line : lines) {
+        printer.send(Message{ScriptLine{line}});
+    }
+    printer.send(Message{ScriptLine{"ENDLJSCRIPT"}});
+    auto job = wait_for_job(printer, "EXTERN", patience);
+    if (!job) {
+        return job.error();
+    }
+    const auto read_back = read_script(printer);
+    return read_back ? Result<ScriptSent>{ScriptSent{*std::move(job), *read_back == lines}} : read_back.error();
+}
+
+} // namespace linefeed::printer
