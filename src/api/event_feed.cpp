@@ -22,6 +22,12 @@ auto guarded(Read&& read) -> decltype(read()) {
     }
 }
 
+/// Events behind `after` are not kept any more; `first` is the oldest that there is. Without a number: who comes again
+/// says what he has seen.
+std::string to_server_sent_gap(std::uint64_t after, std::uint64_t first) {
+    return "event: gap\ndata: " + dump({{"after", after}, {"first", first}}) + "\n\n";
+}
+
 } // namespace
 
 std::string to_server_sent(const daemon::EventView& event) {
@@ -138,6 +144,9 @@ void EventFeed::read(std::uint64_t after, std::function<void(std::optional<Event
         std::optional<EventBatch> batch;
         if (events) {
             batch.emplace(EventBatch{"", after});
+            if (after > 0 && !events->empty() && events->front().id > after + 1) {
+                batch->text = to_server_sent_gap(after, events->front().id);
+            }
             for (const daemon::EventView& event : *events) {
                 batch->text += to_server_sent(event);
                 batch->last = event.id;

@@ -103,16 +103,21 @@ void add_service(Families& families, daemon::Operations& operations) {
 void add_printer_states(Families& families, const std::vector<daemon::PrinterView>& printers) {
     using View = daemon::PrinterView;
     using Number = std::optional<double>;
-    // Nobody is connected to a printer with which nothing is done: that is no fault.
+    // An idle printer that nobody looks at is connected to nobody: that is no fault.
     const auto in_use = [](const View& v, bool good) {
-        return v.phase == daemon::PrinterPhase::idle ? Number{} : Number{good ? 1 : 0};
+        return v.phase == daemon::PrinterPhase::idle && !v.watched ? Number{} : Number{good ? 1 : 0};
     };
     printer_gauge(families, printers, "linefeed_printer_up",
-                  "Whether the printer is connected and shows no error; none while it is idle.",
+                  "Whether the printer is connected and shows no error; none while it is idle and not watched.",
                   [&](const View& v) { return in_use(v, v.link == daemon::LinkState::up && !shows_error(v)); });
     printer_gauge(families, printers, "linefeed_printer_link_up",
-                  "Whether the printer is connected; none while it is idle.",
+                  "Whether the printer is connected; none while it is idle and not watched.",
                   [&](const View& v) { return in_use(v, v.link == daemon::LinkState::up); });
+    printer_gauge(families, printers, "linefeed_printer_cover_open", "Whether the head cover is open.",
+                  [](const View& v) { return v.cover_open ? Number{*v.cover_open ? 1 : 0} : Number{}; });
+    printer_gauge(families, printers, "linefeed_printer_other_machine",
+                  "Whether another machine answers than the one that jobs may start on.",
+                  [](const View& v) -> Number { return v.other_machine() ? 1 : 0; });
     printer_gauge(families, printers, "linefeed_printer_printing", "Whether linefeed prints on it.",
                   [](const View& v) -> Number { return v.phase == daemon::PrinterPhase::printing ? 1 : 0; });
     printer_gauge(families, printers, "linefeed_printer_error_code", "The number of the pending error; 0 = none.",

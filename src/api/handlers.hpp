@@ -28,6 +28,7 @@ namespace linefeed::api::handlers {
 [[nodiscard]] Outcome start_printer(const Request& request, Services& services);
 [[nodiscard]] Outcome stop_printer(const Request& request, Services& services);
 [[nodiscard]] Outcome acknowledge(const Request& request, Services& services);
+[[nodiscard]] Outcome accept_printer(const Request& request, Services& services);
 [[nodiscard]] Outcome inspect(const Request& request, Services& services);
 [[nodiscard]] Outcome command(const Request& request, Services& services);
 [[nodiscard]] Outcome read_file(const Request& request, Services& services);

@@ -50,6 +50,7 @@ Checked<daemon::ImportRequest> named_file(const Request& request) {
 Checked<daemon::ImportRequest> sent_file(const Request& request) {
     daemon::ImportRequest import;
     import.file = *request.upload;
+    import.sent = true;
     import.name = request.query.text("name");
     import.layout = request.query.text("layout");
     import.printer = request.query.text("printer");

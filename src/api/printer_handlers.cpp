@@ -127,6 +127,19 @@ Outcome acknowledge(const Request& request, Services& services) {
         services);
 }
 
+Outcome accept_printer(const Request& request, Services& services) {
+    auto body = BodyReader::parse(request.body);
+    if (!body) {
+        return body.error();
+    }
+    const std::string serial_number = body->required_text("serial_number");
+    if (const auto right = body->finish(); !right) {
+        return right.error();
+    }
+    return printer_done(request, services.operations.accept_printer(request.caller, request.parameter, serial_number),
+                        services);
+}
+
 Outcome read_file(const Request& request, Services& services) {
     auto bytes = services.operations.read_file(request.parameter, request.query.text("path"));
     if (!bytes) {

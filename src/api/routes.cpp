@@ -42,6 +42,7 @@ constexpr std::array table{
     post("/api/v1/printers/{printer}/start", Lane::change, Key::required, Body::optional_json, handlers::start_printer),
     post("/api/v1/printers/{printer}/stop", Lane::stop, Key::accepted, Body::none, handlers::stop_printer),
     post("/api/v1/printers/{printer}/acknowledge", Lane::change, Key::accepted, Body::json, handlers::acknowledge),
+    post("/api/v1/printers/{printer}/accept", Lane::change, Key::accepted, Body::json, handlers::accept_printer),
     post("/api/v1/printers/{printer}/suspend", Lane::change, Key::accepted, Body::json, handlers::suspend),
     get("/api/v1/jobs", Role::viewer, Lane::query, handlers::jobs, {"printer", "phase", "after", "limit"}),
     post("/api/v1/jobs", Lane::import, Key::required, Body::import, handlers::import,

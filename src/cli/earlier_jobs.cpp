@@ -1,5 +1,7 @@
 #include "cli/earlier_jobs.hpp"
 
+#include "intake/grown_batch.hpp"
+
 #include <algorithm>
 
 namespace linefeed::cli {
@@ -11,22 +13,20 @@ Result<bool> begins_with(spool::Spool& spool, const spool::Job& grown, const spo
     if (grown.frame_bytes < old.frame_bytes || grown.records.first() != old.records.first()) {
         return false;
     }
-    for (RecordNumber number = old.records.first(); old.records.contains(number);) {
-        const auto a = spool.read_page(old.id, number);
-        const auto b = spool.read_page(grown.id, number);
-        if (!a || !b) {
-            return a ? b.error() : a.error();
+    for (RecordNumber number = old.records.first();;) {
+        const auto page = spool.read_page(grown.id, number);
+        if (!page) {
+            return page.error();
         }
-        const RecordRange both = RecordRange::closed(number, std::min(a->range().last(), b->range().last()));
-        if (a->slice(both) != b->slice(both)) {
-            return false;
+        const auto same = intake::has_records(spool, old, *page);
+        if (!same || !*same) {
+            return same;
         }
-        if (both.last() == old.records.last()) {
-            break;
+        if (page->range().last() >= old.records.last()) {
+            return true;
         }
-        number = both.last().next();
+        number = page->range().last().next();
     }
-    return true;
 }
 
 /// Printing the same records as a new job is for jobs that are done: otherwise the command that was meant to start

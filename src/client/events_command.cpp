@@ -25,6 +25,7 @@ private:
     Result<void> show_behind(std::uint64_t after);
     Result<void> follow();
     void show_event(const Json& event);
+    void tell_gap(std::uint64_t before, std::uint64_t next) const;
     [[nodiscard]] bool wanted(const Json& event) const;
 
     Service& service_;
@@ -54,9 +55,17 @@ void Events::show_event(const Json& event) {
     }
 }
 
+/// Numbers have no holes: what is missing is not kept any more. From the very first on nobody has missed anything.
+void Events::tell_gap(std::uint64_t before, std::uint64_t next) const {
+    if (before > 0 && next > before + 1) {
+        say("the events " + std::to_string(before + 1) + " to " + std::to_string(next - 1) + " are not kept any more");
+    }
+}
+
 Result<void> Events::show_behind(std::uint64_t after) {
     last_id_ = after;
     return service_.each(behind(after), [&](const Json& event) {
+        tell_gap(last_id_, id_of(event));
         last_id_ = id_of(event);
         if (wanted(event)) {
             show_event(event);
@@ -100,10 +109,12 @@ Result<void> Events::follow() {
     return service_.follow(
         last_id_,
         [&](const Json& event) {
+            const bool missed = last_id_ > 0 && id_of(event) > last_id_ + 1;
             if (lost) {
-                say("the service is there again; nothing was missed");
+                say(missed ? "the service is there again" : "the service is there again; nothing was missed");
                 lost = false;
             }
+            tell_gap(last_id_, id_of(event));
             if (id_of(event) > last_id_) { // whatever the service repeats
                 last_id_ = id_of(event);
                 if (wanted(event)) {

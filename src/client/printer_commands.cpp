@@ -118,6 +118,17 @@ ExitCode run_acknowledge(const AcknowledgeOptions& options) {
     });
 }
 
+ExitCode run_accept(const AcceptOptions& options) {
+    return run_with_service(options.printer.common, [&](Service& service) -> Result<ExitCode> {
+        auto done = change(service, options.printer, "/accept", {{"serial_number", options.serial_number}});
+        if (done && !options.printer.common.json) {
+            show(options.printer.printer + ": the machine with serial number " + options.serial_number +
+                 " is accepted\n");
+        }
+        return done;
+    });
+}
+
 ExitCode run_suspend(const SuspendOptions& options) {
     return run_with_service(options.printer.common, [&](Service& service) -> Result<ExitCode> {
         Json body{{"suspend", options.suspend}};

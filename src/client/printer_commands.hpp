@@ -26,6 +26,11 @@ struct AcknowledgeOptions {
     std::optional<std::int64_t> error{}; ///< PrinterError.code; absent = the one that the printer shows
 };
 
+struct AcceptOptions {
+    PrinterOptions printer;
+    std::string serial_number;
+};
+
 struct SuspendOptions {
     PrinterOptions printer;
     bool suspend = true; ///< false: give the panel back
@@ -44,6 +49,7 @@ struct StopOptions {
 [[nodiscard]] ExitCode run_preflight(const PrinterOptions& options);
 [[nodiscard]] ExitCode run_frames(const FramesOptions& options);
 [[nodiscard]] ExitCode run_acknowledge(const AcknowledgeOptions& options);
+[[nodiscard]] ExitCode run_accept(const AcceptOptions& options);
 [[nodiscard]] ExitCode run_suspend(const SuspendOptions& options);
 /// Ends when the truth is in the ledger. ExitCode::in_doubt if an operator must decide about records then.
 [[nodiscard]] ExitCode run_stop(const StopOptions& options);

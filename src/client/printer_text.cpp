@@ -143,7 +143,10 @@ std::string printer_text(const Json& printer, const Screen& screen) {
     facts.add("last heard", {local_time(printer, "heard_ns")});
     facts.add("machine", {text(printer, "machine")});
     facts.add("nozzle", {text(printer, "nozzle")});
+    facts.add("head cover", {flag(printer, "cover_open") ? "open" : "", Colour::warning});
     facts.add("serial number", {text(printer, "serial_number")});
+    const std::string known = text(printer, "known_serial_number");
+    facts.add("known as", {known == text(printer, "serial_number") ? "" : known, Colour::warning});
     facts.add("firmware", {text(printer, "firmware")});
     facts.add("total prints", {number_text(printer, "total_prints")});
     facts.add("panel", {flag(printer, "panel_suspended") ? "suspended by linefeed" : "", Colour::warning});

@@ -9,6 +9,8 @@ namespace linefeed::config {
 
 namespace {
 
+constexpr std::chrono::seconds shortest_watch_interval{1};
+
 template <typename List>
 struct CapacityOf;
 template <typename T, std::size_t Capacity>
@@ -44,8 +46,13 @@ void check_printer(const PrinterSettings& printer, Context& context) {
         const std::string set = context.was_read(key + ".poll_min") ? key + ".poll_min" : key + ".poll_max";
         context.refuse(set, "poll_min must not be longer than poll_max");
     }
+    if (printer.watch_interval != Duration{0} && printer.watch_interval < shortest_watch_interval) {
+        context.refuse(key + ".watch_interval", "must be 0 s (never), or 1 s at least");
+    }
     if (printer.queue.chain == Chain::seamless) {
-        context.refuse(key + ".queue.chain", "\"seamless\" is not possible in this version: use \"stop\"");
+        context.refuse(key + ".queue.chain",
+                       "\"seamless\" is not possible in this version: the numbers of two jobs in one FIFO do not tell "
+                       "after an interruption which of both has been printed; use \"stop\"");
     }
 }
 

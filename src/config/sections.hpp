@@ -60,6 +60,7 @@ void visit(V& v, S& s) {
     v.value("poll_max", s.pacing.poll_max, DurationValue{1ms, 1s});
     v.value("connect_timeout", s.connect_timeout, DurationValue{shortest_timeout, longest_timeout});
     v.value("reply_timeout", s.reply_timeout, DurationValue{shortest_timeout, longest_timeout});
+    v.value("watch_interval", s.watch_interval, DurationValue{0us, 1h});
     v.section("queue", s.queue);
 }
 
@@ -97,6 +98,8 @@ void visit(V& v, S& s) {
         Choice<Settle>{
             {{"in-place", Settle::in_place}, {"rename", Settle::rename}, {"done-companion", Settle::done_companion}}});
     v.value("poll_interval", s.poll_interval, DurationValue{shortest_timeout, 1h});
+    v.value("grown_files", s.grown_files,
+            Choice<GrownFiles>{{{"refuse", GrownFiles::refuse}, {"print", GrownFiles::print}}});
 }
 
 /// What is wrong with a listening address, a host name as it stands in `Host:`, an origin (scheme://host[:port]).

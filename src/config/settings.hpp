@@ -49,6 +49,8 @@ struct PrinterSettings {
     feeder::PacingSettings pacing{};
     Duration connect_timeout = std::chrono::seconds{3}; ///< 100 ms…10 min
     Duration reply_timeout = std::chrono::seconds{2};   ///< 100 ms…10 min
+    /// How often it is looked at while linefeed does nothing with it; 0 (never), or 1 s…1 h.
+    Duration watch_interval = std::chrono::seconds{5};
     QueueSettings queue{};
 };
 
@@ -85,6 +87,12 @@ enum class Settle {
     done_companion, ///< FILE is whole once FILE.done is there
 };
 
+/// What is done about a file that begins with all the records of an earlier one of the same folder and has more.
+enum class GrownFiles {
+    refuse, ///< it fails, and the report names the earlier one
+    print,  ///< all of it, the earlier records once more
+};
+
 struct FolderSettings {
     std::string name;
     std::filesystem::path path; ///< absolute; no two lie in each other, and no file of the service lies in it
@@ -98,6 +106,7 @@ struct FolderSettings {
     Watch watch = Watch::inotify;
     Settle settle = Settle::in_place;
     Duration poll_interval = std::chrono::seconds{5}; ///< 100 ms…1 h
+    GrownFiles grown_files = GrownFiles::refuse;
 };
 
 struct HttpSettings {

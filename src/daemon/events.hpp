@@ -22,6 +22,8 @@ inline constexpr std::string_view job_reprint = "job.reprint"; ///< records are 
 inline constexpr std::string_view job_finished = "job.finished";
 inline constexpr std::string_view job_cancelled = "job.cancelled";
 
+inline constexpr std::string_view printer_up = "printer.up"; ///< it answers again
+inline constexpr std::string_view printer_down = "printer.down";
 inline constexpr std::string_view printer_notice = "printer.notice";
 inline constexpr std::string_view printer_warning = "printer.warning";
 inline constexpr std::string_view printer_error = "printer.error";

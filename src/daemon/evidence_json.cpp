@@ -39,7 +39,10 @@ public:
     bool number_integer(std::int64_t /*value*/) override { return scalar(); }
     bool number_float(double /*value*/, const std::string& /*text*/) override { return scalar(); }
     bool null() override { return scalar(); }
-    bool boolean(bool /*value*/) override { return scalar(); }
+    bool boolean(bool value) override {
+        take_flag(key_, value);
+        return scalar();
+    }
     bool binary(Json::binary_t& /*value*/) override { return scalar(); }
     bool start_object(std::size_t /*elements*/) override { return open(); }
     bool end_object() override { return close(); }
@@ -52,6 +55,7 @@ public:
 private:
     virtual void take_text(std::string_view /*key*/, std::string& /*value*/) {}
     virtual void take_number(std::string_view key, std::uint32_t value) = 0;
+    virtual void take_flag(std::string_view /*key*/, bool /*value*/) {}
 
     bool scalar() {
         key_.clear();
@@ -97,18 +101,21 @@ private:
     bool has_printer_ = false;
 };
 
-class BrokenOffReader : public ObjectReader {
+class RunEndReader : public ObjectReader {
 public:
-    [[nodiscard]] RecordNumber number() const { return number_; }
+    [[nodiscard]] const RunEnd& end() const { return end_; }
 
 private:
     void take_number(std::string_view key, std::uint32_t value) override {
         if (key == "broken_off") {
-            number_ = RecordNumber{value};
+            end_.broken_off = RecordNumber{value};
         }
     }
+    void take_flag(std::string_view key, bool value) override {
+        end_.unclear = end_.unclear || (key == "unclear" && value);
+    }
 
-    RecordNumber number_;
+    RunEnd end_;
 };
 
 } // namespace
@@ -166,12 +173,15 @@ std::string outcome_json(const feeder::Outcome& outcome) {
     if (outcome.broken_off != RecordNumber{}) {
         json.add("broken_off", outcome.broken_off.value());
     }
+    if (outcome.unclear) {
+        json.add_json("unclear", "true");
+    }
     return json.text();
 }
 
-std::optional<RecordNumber> parse_broken_off(const std::string& outcome) {
-    BrokenOffReader reader;
-    return Json::sax_parse(outcome, &reader) ? std::optional{reader.number()} : std::nullopt;
+std::optional<RunEnd> parse_run_end(const std::string& text) {
+    RunEndReader reader;
+    return Json::sax_parse(text, &reader) ? std::optional{reader.end()} : std::nullopt;
 }
 
 } // namespace linefeed::daemon

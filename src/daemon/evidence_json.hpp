@@ -20,6 +20,14 @@ struct RunStart {
     friend bool operator==(const RunStart&, const RunStart&) = default;
 };
 
+/// What a run_ended row remembers of Outcome, for the records that the run has left open.
+struct RunEnd {
+    RecordNumber broken_off;
+    bool unclear = false;
+
+    friend bool operator==(const RunEnd&, const RunEnd&) = default;
+};
+
 [[nodiscard]] std::string run_start_json(const std::string& printer, const feeder::BeginRun& begin);
 /// std::nullopt if the text is not what run_start_json() wrote.
 [[nodiscard]] std::optional<RunStart> parse_run_start(const std::string& json);
@@ -27,7 +35,7 @@ struct RunStart {
 [[nodiscard]] std::string mail_json(const protocol::MailStatus& mail);
 [[nodiscard]] std::string settle_json(const feeder::Settle& settle);
 [[nodiscard]] std::string outcome_json(const feeder::Outcome& outcome);
-/// Outcome::broken_off of what outcome_json() wrote; std::nullopt if the text is no JSON.
-[[nodiscard]] std::optional<RecordNumber> parse_broken_off(const std::string& outcome);
+/// std::nullopt if the text is no JSON.
+[[nodiscard]] std::optional<RunEnd> parse_run_end(const std::string& json);
 
 } // namespace linefeed::daemon

@@ -72,8 +72,9 @@ Result<std::optional<OpenIssue>> find_open_issue(spool::Spool& spool, spool::Job
     }
     issue.facts.last = issue.run_range.last();
     if (const auto& ended = (*last_run)->ended) {
-        const RecordNumber broken_off = parse_broken_off(ended->entry.evidence).value_or(RecordNumber{});
-        issue.facts.broken_off = issue.records.contains(broken_off) ? broken_off : RecordNumber{};
+        const RunEnd end = parse_run_end(ended->entry.evidence).value_or(RunEnd{});
+        issue.facts.broken_off = issue.records.contains(end.broken_off) ? end.broken_off : RecordNumber{};
+        issue.facts.unclear = end.unclear;
     }
     return std::optional<OpenIssue>{issue};
 }
@@ -243,10 +244,15 @@ Result<void> LedgerKeeper::settle(const feeder::Settle& settle) {
     return append_verdict(job_, *run_, settle);
 }
 
-/// No run has begun, but it was seen that a print of the earlier one may be broken off.
+/// No run has begun, but it was seen that a print of the earlier one may be broken off, or that nobody knows its
+/// records.
 Result<void> LedgerKeeper::finish_earlier(const feeder::Outcome& outcome) {
-    const bool news = outcome.broken_off != RecordNumber{} && open_ && outcome.broken_off != open_->facts.broken_off;
-    if (!news) {
+    if (!open_) {
+        return {};
+    }
+    const bool broken_off = outcome.broken_off != RecordNumber{} && outcome.broken_off != open_->facts.broken_off;
+    const bool unclear = outcome.unclear && !open_->facts.unclear;
+    if (!broken_off && !unclear) {
         return {};
     }
     const LedgerEntry ended{LedgerKind::run_ended, open_->run, {}, outcome_json(outcome)};

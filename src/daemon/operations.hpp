@@ -103,10 +103,13 @@ struct PrinterView {
     std::string address; ///< tcp://…
     std::string profile;
     LinkState link = LinkState::down;
+    bool watched = false; ///< looked at also while idle: `link` is by the last look then
     PrinterPhase phase = PrinterPhase::idle;
-    std::string machine;       ///< state in words as last reported; empty = never heard of
-    std::string nozzle;        ///< in words; empty = never heard of
-    std::string serial_number; ///< `?VS`; empty = never heard of
+    std::string machine; ///< state in words as last reported; empty = never heard of
+    std::string nozzle;  ///< in words; empty = never heard of
+    std::optional<bool> cover_open;
+    std::string serial_number;       ///< `?VS`; empty = never heard of
+    std::string known_serial_number; ///< of the machine that jobs may start on; empty = whichever answers first
     std::string firmware;
     std::optional<std::uint64_t> total_prints; ///< `?CC`
     protocol::PrinterError error{};            ///< pending, as last reported
@@ -119,7 +122,14 @@ struct PrinterView {
     PrinterFigures figures;
     std::vector<std::string> warnings; ///< one line each: what and what to do
     std::int64_t heard_ns = 0;         ///< wall time of the last frame; 0 = never
-    bool held = false; ///< an operator has stopped it: nothing starts by itself until somebody starts a job
+    /// An operator has stopped it, or a job waited there before the service was started: nothing starts by itself until
+    /// somebody starts a job.
+    bool held = false;
+
+    /// Not the one that jobs may start on.
+    [[nodiscard]] bool other_machine() const {
+        return !known_serial_number.empty() && !serial_number.empty() && known_serial_number != serial_number;
+    }
 };
 
 enum class Severity { ok, warning, problem };
@@ -189,6 +199,7 @@ struct ImportRequest {
     std::string printer{};        ///< queue it there; empty = no queue
     bool autostart = false;       ///< may start by itself if its printer's queue does so too
     bool again = false;           ///< import the same content once more, as a new job
+    bool sent = false;            ///< came as a body: what lies beside it belongs to others
 };
 
 struct ImportAnswer {
@@ -341,6 +352,9 @@ public:
     /// `!EQ`, if that error (PrinterError::code()) is what the printer still shows.
     [[nodiscard]] virtual Result<void> acknowledge(const Caller& caller, std::string_view printer,
                                                    std::uint32_t error) = 0;
+    /// From now on jobs may start on the machine with this serial number, if that is what the printer says.
+    [[nodiscard]] virtual Result<void> accept_printer(const Caller& caller, std::string_view printer,
+                                                      const std::string& serial_number) = 0;
     /// `!US`, held until it is taken back, the service ends or nobody has asked again for `hold`.
     [[nodiscard]] virtual Result<void> suspend_panel(const Caller& caller, std::string_view printer, bool suspend,
                                                      Duration hold) = 0;

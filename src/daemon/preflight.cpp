@@ -50,14 +50,18 @@ Finding reachable(const PreflightFacts& facts) {
 
 Finding identity(const protocol::VersionInfo& version, const PreflightRules& rules) {
     constexpr const char* check = "identity";
+    const std::string& known = rules.known_serial_number;
+    if (!known.empty() && version.serial_number.empty()) {
+        return warning(check, "the printer does not say its serial number; it was " + known,
+                       "Look whether it is the right machine.");
+    }
     const std::string name = (version.type.empty() ? "a printer" : version.type) + ", firmware " +
                              (version.firmware.empty() ? "unknown" : version.firmware) + ", serial number " +
                              (version.serial_number.empty() ? "unknown" : version.serial_number);
-    const std::string& known = rules.known_serial_number;
-    if (!known.empty() && !version.serial_number.empty() && known != version.serial_number) {
-        return warning(check, name + "; last time the serial number here was " + known,
-                       "If the printer was exchanged there is nothing to do. Otherwise the address is that of another "
-                       "printer.");
+    if (!known.empty() && known != version.serial_number) {
+        return problem(check, name + "; the serial number here was " + known,
+                       "If the printer was exchanged, accept it: linefeed printer " + rules.printer.name + " accept " +
+                           version.serial_number + ". Otherwise the address is that of another printer.");
     }
     return ok(check, name);
 }
@@ -277,8 +281,10 @@ std::vector<Finding> judge(const PreflightFacts& facts, const PreflightRules& ru
     if (!facts.machine) {
         return findings;
     }
+    if (facts.version || !rules.known_serial_number.empty()) {
+        findings.push_back(identity(facts.version.value_or(protocol::VersionInfo{}), rules));
+    }
     if (facts.version) {
-        findings.push_back(identity(*facts.version, rules));
         findings.push_back(profile(*facts.version, rules));
     }
     findings.push_back(ready(*facts.machine, rules));

@@ -154,6 +154,11 @@ bool Feeder::lacks_value(const protocol::MailStatus& status) {
 /// Only the second of two answers is surely current; a print in progress gets the time to finish, and a flush the time
 /// to be carried out.
 void Feeder::locate_step(Instant now, Actions& out) {
+    const bool stands = status_.machine != MachineState::printing;
+    if (stands && std::exchange(stood_, true)) { // perhaps it is started again before it has been judged
+        note_unfinished();
+        note_restart();
+    }
     if (mail_outstanding_ > 0) {
         mail_reads_ = 0; // an answer to an inquiry from before the stop
         return;
@@ -161,11 +166,6 @@ void Feeder::locate_step(Instant now, Actions& out) {
     if (mail_reads_ < 2) {
         ask(Parameter::SM, now, out);
         return;
-    }
-    const bool stands = status_.machine != MachineState::printing;
-    if (stands) {
-        note_unfinished();
-        note_restart();
     }
     const bool print_in_progress = stands && !mail_.last_print_finished;
     const bool not_flushed = phase_ == Phase::clearing && mail_.entries > 0;

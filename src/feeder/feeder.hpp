@@ -205,6 +205,8 @@ private:
     [[nodiscard]] Report judge_report();
     void note_unfinished();
     void note_restart();
+    [[nodiscard]] RecordNumber printed_at_most() const;
+    [[nodiscard]] bool may_have_skipped();
     void watch_for_missing(Instant now, Actions& out);
     void doubt_number();
     [[nodiscard]] bool take_report(Instant now, Actions& out);
@@ -260,6 +262,7 @@ private:
     PrinterFacts facts_;
 
     int mail_reads_ = 0;        ///< `=SM` answers in this phase
+    bool stood_ = false;        ///< the printer, by `=RS`, at the last `=SM` in this phase
     bool lacked_value_ = false; ///< the last `=SM`
     int identity_answers_missing_ = 0;
     Instant identity_asked_at_{};
@@ -302,7 +305,9 @@ private:
     std::optional<std::uint64_t> odd_excess_;
     /// The last number that can come from what was in the printer by the last answer while the stop point stood.
     std::uint64_t held_through_ = 0;
-    bool missing_ = false;             ///< records, by that answer
+    /// Seen in the printer up to this number: it finds its numbers out of order if one is missing.
+    std::uint64_t chained_through_ = 0;
+    int missing_ = 0;                  ///< answers in a row by which records are missing
     RecordNumber said_before_;         ///< surely printed by the answer before, taken by itself
     std::uint64_t excess_of_fill_ = 0; ///< 1: its firmware counts the loaded record, too
     std::optional<std::uint32_t> total_before_;
@@ -314,6 +319,7 @@ private:
     bool supply_noticed_ = false;            ///< low, and said so
     std::optional<Instant> suspected_since_; ///< the stop point vanished: nothing is sent before `?RS` has told why
     bool restarted_ = false;                 ///< stopped and started again at the printer, as records were on their way
+    bool nobody_knows_ = false;              ///< at the look before the flush, which records are printed
     bool fed_by_another_ = false;            ///< by what was reported while it printed
     RecordNumber broken_off_;                ///< a print that was not finished when the printer stood; 0 = none
     bool memory_lost_ = false;               ///< the reported number went back

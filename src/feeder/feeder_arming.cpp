@@ -231,7 +231,7 @@ void Feeder::verify(Instant now, Actions& out) {
         return;
     }
     excess_of_fill_ = excess;
-    held_through_ = refill_.sent_through().value();
+    held_through_ = chained_through_ = refill_.sent_through().value();
     if (!as_expected) {
         out.push_back(Notice{NoticeCode::entries_differ, {}});
         doubt_number(); // a stop, or a damaged line, may have cost a part of the fill

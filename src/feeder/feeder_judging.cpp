@@ -24,7 +24,8 @@ OpenRun Feeder::open_run() const {
             .serial_number = facts_.version ? facts_.version->serial_number : std::string{},
             .total_before = total_before_,
             .last_printed_before = left_over_,
-            .last = marker_sent_ ? std::optional{range.last()} : std::nullopt};
+            .last = marker_sent_ ? std::optional{range.last()} : std::nullopt,
+            .unclear = restarted_ || nobody_knows_};
 }
 
 Evidence Feeder::evidence() const {
@@ -40,7 +41,8 @@ Evidence Feeder::evidence() const {
             .uninterrupted = !memory_lost_,
             .restarted = restarted_,
             .restart_unseen = counter_proof_.doubted(),
-            .fed_by_another = fed_by_another_ || is_error(status_.error, protocol::error_code::buffer_full),
+            .fed_by_another = fed_by_another_ || is_error(status_.error, protocol::error_code::buffer_full) ||
+                              (!total_before_ && breaks_numbers(status_.error)), // a counter would tell
             .broken_off = broken_off_};
 }
 
@@ -62,6 +64,9 @@ void Feeder::judge(Instant now, Actions& out) {
 
 void Feeder::record_printed(const Verdict& verdict, const Evidence& seen, Instant now, Actions& out) {
     first_look_ = seen;
+    if (verdict.basis == Basis::none) {
+        (has_granted_records() ? nobody_knows_ : plan_.open->unclear) = true;
+    }
     const RecordNumber confirmed = confirmed_through_;
     if (!verdict.printed.empty()) {
         (has_granted_records() ? confirmed_through_ : plan_.open->printed_through) = verdict.printed.last();

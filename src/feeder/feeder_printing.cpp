@@ -29,6 +29,10 @@ void Feeder::print_status(Instant now, Actions& out) {
     if (suspected_since_) {
         stop_suspected(now, out);
     }
+    if (phase_ == Phase::printing && missing_ > 1 && mail_.entries == 0) {
+        begin_stop(OutcomeCode::stopped_at_printer, now, out); // nothing of it is left for the next product
+        return;
+    }
     if (phase_ == Phase::printing && is_error(status_.error, protocol::error_code::buffer_full)) {
         fed_by_another_ = true;
         begin_stop(OutcomeCode::impossible_report, now, out); // by our credit there was room
@@ -160,17 +164,42 @@ void Feeder::confirm_reported(Actions& out) {
     }
 }
 
+/// The number that stood there before this run may be that of a record which is printed once more.
+RecordNumber Feeder::printed_at_most() const {
+    const bool unclear = !left_over_passed_ && mail_.last_printed == left_over_;
+    const RecordNumber left_over = unclear ? std::min(left_over_, refill_.sent_through()) : RecordNumber{};
+    return std::max(left_over, refill_.printed_through());
+}
+
+/// Behind an empty FIFO any number may follow (protocol, section 5): when the printer has printed all that it was seen
+/// to hold, and more, a record between may have been lost on its way, and skipped.
+bool Feeder::may_have_skipped() {
+    const std::uint64_t printed = refill_.printed_through().value();
+    const bool may = printed > chained_through_ + 1;
+    const std::uint64_t loaded = mail_.entries == 0 ? 0 : 1 - excess_of_fill_; // with 0 entries there may be none
+    const std::uint64_t held =
+        std::min<std::uint64_t>(printed + mail_.entries + loaded, refill_.sent_through().value());
+    chained_through_ = std::max(chained_through_, held);
+    return may;
+}
+
 /// Fewer records are in the printer than it surely received: a serial line has lost some, or another client has flushed
-/// the FIFO. The counter will tell whether it prints on behind them; without one it must not come so far.
+/// the FIFO. The counter will tell whether it prints on behind them; without one it must not come so far. When nothing
+/// is left, print_status() sees to it.
 void Feeder::watch_for_missing(Instant now, Actions& out) {
-    const std::uint64_t held = refill_.printed_through().value() + mail_.entries + std::uint64_t{1};
-    const bool missing_before = missing_;
+    const std::uint64_t held = printed_at_most().value() + mail_.entries + std::uint64_t{1};
     held_through_ = std::min<std::uint64_t>(held, refill_.sent_through().value() + (marker_sent_ ? 1 : 0));
-    missing_ = held < surely_received_.value();
-    if (missing_) {
+    missing_ = held < surely_received_.value() ? missing_ + 1 : 0;
+    if (missing_ > 0) {
         doubt_number();
     }
-    if (missing_ && missing_before && !total_before_) { // not just a damaged answer
+    if (total_before_) {
+        return;
+    }
+    if (may_have_skipped()) {
+        restarted_ = true; // and so no number counts
+        begin_stop(OutcomeCode::stopped_at_printer, now, out);
+    } else if (missing_ > 1) { // once: it may be a damaged answer
         begin_stop(OutcomeCode::stopped_at_printer, now, out);
     }
 }

@@ -103,6 +103,7 @@ void Feeder::begin_judging(Instant now, Actions& out) {
 /// `?RS` once more behind the stop: what is read from now on is the truth, as long as the printer stands.
 void Feeder::judge_status(Instant now, Actions& out) {
     if (status_.machine == MachineState::printing) {
+        note_unfinished(); // by the last answer: no other may tell it
         restarted_ = true;
         send_stop(now, out);
         return;
@@ -144,7 +145,8 @@ void Feeder::end(OutcomeCode code, Actions& out) {
     retry_at_.reset();
     deadline_.reset();
     go_due_.reset();
-    out.push_back(End{{code, status_.machine, status_.error, any_sent_, broken_off_}});
+    const bool unclear = restarted_ || nobody_knows_ || (plan_.open && plan_.open->unclear);
+    out.push_back(End{{code, status_.machine, status_.error, any_sent_, broken_off_, unclear}});
 }
 
 } // namespace linefeed::feeder

@@ -96,7 +96,7 @@ void Feeder::taken_over(RecordRange range, RecordNumber durable_through, Instant
     reported_through_ = std::max(reported_through_, confirmed_through_);
     refill_.resume(range, RecordCount{mail_.depth}, durable_through, taken_sent_through_, mail_.last_printed);
     total_before_ = run.total_before;
-    held_through_ = taken_sent_through_.value();
+    held_through_ = chained_through_ = taken_sent_through_.value();
     said_before_ = confirmed_through_;
     doubt_number(); // behind what the ledger has adopted
     left_over_ = run.last_printed_before;

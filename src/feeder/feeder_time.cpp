@@ -10,6 +10,7 @@ using protocol::Parameter;
 void Feeder::enter(Phase phase, Instant now, Duration timeout) {
     phase_ = phase;
     mail_reads_ = 0;
+    stood_ = false;
     retry_at_.reset();
     go_due_.reset();
     deadline_.reset();

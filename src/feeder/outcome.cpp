@@ -79,8 +79,7 @@ std::string not_ready(protocol::MachineState machine) {
 
 /// What linefeed knows of an error that comes from mailing; empty = nothing.
 std::string cause_of(const protocol::PrinterError& error) {
-    namespace codes = protocol::error_code;
-    if (is_error(error, codes::number_wrong) || is_error(error, codes::number_not_consecutive)) {
+    if (breaks_numbers(error)) {
         return ": a record was lost on the line, or another program has sent one; if it comes before the first print, "
                "this printer wants a new sequence to begin with number 0, which linefeed does not do";
     }

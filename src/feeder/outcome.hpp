@@ -45,6 +45,9 @@ struct Outcome {
     /// A print that had not finished when the printer stood, as last seen; 0 = none. If the run stays open, no later
     /// answer tells it: the printer may be started again behind it.
     RecordNumber broken_off{};
+    /// Nobody knew which records were printed: the printer may have gone on behind some that it has thrown away. If the
+    /// run stays open and the printer then loses its number, its counter alone does not tell them.
+    bool unclear = false;
 
     friend bool operator==(const Outcome&, const Outcome&) = default;
     friend std::ostream& operator<<(std::ostream& out, const Outcome& outcome);

@@ -39,7 +39,7 @@ std::optional<std::uint32_t> prints_since(const OpenRun& run, const Evidence& ev
 /// this run from above; and the print during which the memory was lost may be counted or not.
 Verdict by_counter(const OpenRun& run, const Evidence& evidence) {
     const auto prints = prints_since(run, evidence);
-    if (!prints) {
+    if (!prints || run.unclear) {
         return all_in_doubt(run);
     }
     const std::uint64_t in_progress = std::uint64_t{run.first.value()} + *prints;

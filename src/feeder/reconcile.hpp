@@ -35,6 +35,8 @@ struct OpenRun {
     std::optional<RecordNumber> last{};
     /// Evidence::broken_off as it was last seen; 0 = none.
     RecordNumber broken_off{};
+    /// Outcome::unclear: it was seen that records may have been left out.
+    bool unclear = false;
 
     friend bool operator==(const OpenRun&, const OpenRun&) = default;
 };

@@ -1,5 +1,7 @@
 #include "intake/batch_store.hpp"
 
+#include "intake/grown_batch.hpp"
+
 #include <algorithm>
 #include <filesystem>
 
@@ -66,7 +68,8 @@ Result<std::optional<KnownBatch>> SpoolBatches::find(const spool::JobSpec& spec)
 }
 
 Result<BatchImport> SpoolBatches::import(RowSource& source, const spool::JobSpec& spec, const ImportOptions& options) {
-    auto outcome = import_source(source, spool_, spec, options);
+    GrownCheck grown{spec, [this](const auto& what) { return what(spool_); }};
+    auto outcome = import_source(source, spool_, spec, options.refuse_grown ? grown.in(options) : options);
     if (!outcome) {
         return outcome.error();
     }

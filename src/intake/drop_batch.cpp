@@ -193,6 +193,7 @@ Result<void> DropFolder::import(const Claimed& batch, FileInput file, const File
         changed = is_changed(batch, look);
         return changed ? Failure{FailureKind::input, "it was changed while it was read"} : Result<void>{};
     };
+    opened->options.refuse_grown = settings_.refuse_grown;
     opened->options.on_progress = [&](const ImportReport& so_far, double fraction) {
         return events_.progress(batch.name, so_far.rows, fraction);
     };

@@ -40,6 +40,7 @@ struct DropSettings {
     std::optional<WatchMode> mode{};  ///< absent = inotify, but poll on network file systems
     std::optional<Duration> rescan{}; ///< see watch_folder()
     Layout layout{};
+    bool refuse_grown = true; ///< a file that begins with all the records of an earlier one and has more fails
     std::uint64_t max_bytes = std::uint64_t{64} << 30U; ///< larger files fail unread
 };
 

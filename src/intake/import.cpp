@@ -42,6 +42,7 @@ public:
         : target_(target)
         , spec_(spec)
         , check_source_(options.check_source ? options.check_source : [&spec] { return check_unchanged(spec.source); })
+        , check_page_(options.check_page)
         , pages_(source, spec.base, options) {}
 
     [[nodiscard]] Result<ImportOutcome> run();
@@ -52,6 +53,7 @@ private:
     ImportTarget& target_;
     const spool::JobSpec& spec_;
     std::function<Result<void>()> check_source_;
+    std::function<Result<void>(const RecordPage&)> check_page_;
     PageMaker pages_;
     bool refused_ = false;
 };
@@ -115,6 +117,9 @@ Result<ImportOutcome> Import::run() {
             return finish();
         }
         const bool stored = !refused_ && !page.ends.empty();
+        if (auto right = stored && check_page_ ? check_page_(page) : Result<void>{}; !right) {
+            return right.error();
+        }
         if (auto added = stored ? target_.add(std::move(page)) : Result<void>{}; !added) {
             return added.error();
         }

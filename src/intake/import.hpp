@@ -50,6 +50,11 @@ struct ImportOptions {
     bool skip_bad = false;
     /// Asked behind each record: true closes the page although it is not full.
     std::function<bool()> close_page{};
+    /// Asked about each page that is to be stored; a failure refuses the source. Empty = none is asked about.
+    std::function<Result<void>(const RecordPage&)> check_page{};
+    /// A BatchStore refuses a source with FailureKind::input that begins with all the records of an earlier batch of
+    /// its folder and has more. Needs check_source.
+    bool refuse_grown = false;
     /// import_source() asks it before it makes the job: a failure refuses the source. Default: check_unchanged().
     std::function<Result<void>()> check_source{};
     /// Called now and then; returning false cancels the import, which then fails with FailureKind::stopped.

@@ -28,6 +28,7 @@ void add_printer(CLI::App& app, Commands& commands) {
     const auto options = std::make_shared<client::PrinterOptions>();
     const auto error = std::make_shared<bool>(false);
     const auto code = std::make_shared<std::optional<std::int64_t>>();
+    const auto serial_number = std::make_shared<std::string>();
     const auto hold_s = std::make_shared<std::int64_t>(60);
     CLI::App& printer = *app.add_subcommand("printer", "Show one printer, or do something with it");
     printer
@@ -51,12 +52,17 @@ void add_printer(CLI::App& app, Commands& commands) {
     acknowledge.alias("ack");
     acknowledge.add_option("ERROR", *code, "Its number; another one is left alone. Default: the one that is shown now")
         ->check(CLI::Range(1, 33'554'431));
+    CLI::App& accept =
+        *printer.add_subcommand("accept", "The printer was exchanged: accept the machine that answers now");
+    accept
+        .add_option("SERIAL", *serial_number, "Its serial number, see linefeed printer PRINTER; another one is refused")
+        ->required();
     CLI::App& suspend = *printer.add_subcommand("suspend", "Suspend the panel, so that nobody presses a key on it");
     suspend.add_option("--hold", *hold_s, "Seconds until it is given back by itself")
         ->capture_default_str()
         ->check(CLI::Range(1, 86'400));
     CLI::App& release = *printer.add_subcommand("release", "Give the panel back");
-    for (CLI::App* const action : {&preflight, &frames, &acknowledge, &suspend, &release}) {
+    for (CLI::App* const action : {&preflight, &frames, &acknowledge, &accept, &suspend, &release}) {
         action->fallthrough();
     }
 
@@ -75,6 +81,10 @@ void add_printer(CLI::App& app, Commands& commands) {
                             }
                             return client::run_task(task);
                         }});
+    commands.push_back(
+        {&accept, [options, serial_number] {
+             return of_service_only(*options, [&] { return client::run_accept({*options, *serial_number}); });
+         }});
     commands.push_back({&suspend, [options, hold_s] {
                             const client::SuspendOptions all{*options, true, *hold_s};
                             return client::is_address(options->printer) ? client::run_direct_suspend(all)

@@ -1,5 +1,7 @@
 #include "service/batches.hpp"
 
+#include "intake/grown_batch.hpp"
+
 #include <filesystem>
 #include <utility>
 
@@ -120,7 +122,8 @@ Result<intake::BatchImport> Batches::import(intake::RowSource& source, const spo
                                             const intake::ImportOptions& options) {
     earlier_.reset();
     Target target{*this};
-    auto outcome = intake::import_source(source, target, spec, options);
+    intake::GrownCheck grown{spec, [this](const auto& what) { return spool_.read(what); }};
+    auto outcome = intake::import_source(source, target, spec, options.refuse_grown ? grown.in(options) : options);
     if (!outcome) {
         return outcome.error();
     }

@@ -63,6 +63,7 @@ intake::DropSettings drop_settings(const config::FolderSettings& folder, const c
     drop.mode = watch_mode(folder.watch);
     drop.rescan = folder.poll_interval;
     drop.layout = layout_of(*layout, printer->profile);
+    drop.refuse_grown = folder.grown_files == config::GrownFiles::refuse;
     if (!drop.layout.graphics_folder) {
         drop.layout.graphics_folder = folder.path; // a file that is being read lies in a folder of its own
     }

@@ -11,26 +11,34 @@ namespace linefeed::service {
 using daemon::JobPhase;
 using daemon::PrinterPhase;
 
-Line::Line(const LineServices& services, std::string printer, SharedSettings settings, bool held)
+Line::Line(const LineServices& services, std::string printer, SharedSettings settings, Past past)
     : services_(services)
     , printer_(std::move(printer))
     , settings_(std::move(settings))
-    , held_(held)
+    , held_(past.held)
+    , known_serial_number_(std::move(past.serial_number))
     , thread_([this] { serve(); }) {}
 
 Line::~Line() {
     request_stop();
+    close();
+    thread_.join();
+}
+
+void Line::close() {
     {
         const std::lock_guard lock{mutex_};
         closing_ = true;
     }
     changed_.notify_all();
-    thread_.join();
 }
 
 void Line::use(SharedSettings settings) {
-    const std::lock_guard lock{mutex_};
-    settings_ = std::move(settings);
+    {
+        const std::lock_guard lock{mutex_};
+        settings_ = std::move(settings);
+    }
+    changed_.notify_all();
 }
 
 SharedSettings Line::settings() const {
@@ -42,7 +50,8 @@ Result<void> Line::start(spool::JobId job, StartedBy who) {
     {
         const std::lock_guard lock{mutex_};
         if (held_ && who == StartedBy::itself) {
-            return Failure{FailureKind::stopped, "printer " + printer_ + " was stopped by an operator"};
+            return Failure{FailureKind::stopped,
+                           "nothing starts by itself on printer " + printer_ + " until somebody starts a job"};
         }
         if (active_ || closing_) {
             return Failure{FailureKind::stopped,
@@ -89,12 +98,37 @@ std::optional<Ending> Line::wait_until_idle() {
     return last_ending_;
 }
 
+/// With mutex_ held. When the printer is looked at again, if nothing else is done with it; absent = never.
+std::optional<std::chrono::steady_clock::time_point> Line::next_look() const {
+    const config::PrinterSettings* const own = settings_->printer(printer_);
+    if (own == nullptr || own->watch_interval == Duration{0}) {
+        return std::nullopt;
+    }
+    return looked_at_ ? *looked_at_ + own->watch_interval : std::chrono::steady_clock::now();
+}
+
 void Line::serve() {
     std::unique_lock lock{mutex_};
     while (true) {
-        changed_.wait(lock, [this] { return closing_ || (active_ && !begun_ && reserved_ == 0); });
-        if (!active_ || begun_) {
+        if (!active_ && closing_) {
             return;
+        }
+        if (active_ && reserved_ > 0 && !closing_) {
+            changed_.wait(lock);
+            continue;
+        }
+        if (!active_) {
+            const auto at = next_look();
+            if (!at) {
+                changed_.wait(lock);
+            } else if (std::chrono::steady_clock::now() < *at) {
+                changed_.wait_until(lock, *at);
+            } else {
+                lock.unlock();
+                glance();
+                lock.lock();
+            }
+            continue;
         }
         begun_ = true;
         const spool::JobId job = *active_;
@@ -102,6 +136,8 @@ void Line::serve() {
         print(job);
         lock.lock();
         active_.reset();
+        looked_at_.reset();
+        link_.reset();
         const bool stopped = stop_requested_; // at its very end, perhaps: the next job does not follow then either
         lock.unlock();
         changed_.notify_all();
@@ -188,10 +224,16 @@ daemon::PrinterView Line::view() {
         view.link = progress.heard_at ? daemon::LinkState::up : daemon::LinkState::connecting;
         view.figures = figures_of(progress, records_.value_or(progress.range));
     }
+    if (!at && link_) {
+        view.link = *link_;
+        view.watched = true;
+    }
     view.heard_ns = heard_.at_ns;
+    view.known_serial_number = known_serial_number_;
     if (heard_.machine) {
         view.machine = to_string(heard_.machine->machine);
         view.nozzle = to_string(heard_.machine->nozzle);
+        view.cover_open = heard_.machine->cover_open;
         view.error = heard_.machine->error;
     }
     if (heard_.version) {
@@ -204,6 +246,10 @@ daemon::PrinterView Line::view() {
     if (const config::ErrorEntry* const entry = view.error.none() ? nullptr : settings_->errors.find(view.error)) {
         view.error_meaning = entry->meaning;
         view.error_advice = entry->advice;
+    }
+    if (view.other_machine()) {
+        view.warnings.push_back("another machine: serial number " + view.serial_number + ", and it was " +
+                                known_serial_number_ + "; no job starts there before an operator has accepted it");
     }
     if (supply_low_) {
         view.warnings.emplace_back("the printer runs empty soon: the records are read more slowly than the line prints "

@@ -8,6 +8,7 @@
 #include "daemon/operations.hpp"
 #include "daemon/other_jobs.hpp"
 #include "daemon/preflight.hpp"
+#include "daemon/printer_watch.hpp"
 #include "printer/printer_commands.hpp"
 #include "printer/task.hpp"
 #include "service/event_log.hpp"
@@ -51,11 +52,15 @@ struct Ending {
 
 enum class StartedBy { person, itself };
 
-/// `held` as in Line::hold(). Flow: construct; start() and stop() as the operator wants. Destroying it stops the line
-/// and waits for the truth.
+/// Flow: construct; start() and stop() as the operator wants. Destroying it stops the line and waits for the truth.
 class Line {
 public:
-    Line(const LineServices& services, std::string printer, SharedSettings settings, bool held);
+    /// What is remembered of the printer.
+    struct Past {
+        bool held = false;         ///< as by hold(), or a job has waited there before the service was started
+        std::string serial_number; ///< of the machine; empty = not known yet
+    };
+    Line(const LineServices& services, std::string printer, SharedSettings settings, Past past);
     ~Line();
     Line(const Line&) = delete;
     Line& operator=(const Line&) = delete;
@@ -71,6 +76,8 @@ public:
     /// As request_stop(); and from now on nothing starts by itself until an operator starts something.
     void hold();
     [[nodiscard]] bool held() const;
+    /// From now on nothing is started, nor the printer looked at. Does not wait.
+    void close();
     /// Waits until what is armed or printed now is not any more. How the last job ended, if there was one.
     [[nodiscard]] std::optional<Ending> wait_until_idle();
     /// The job that is armed or printed, and where it stands.
@@ -85,6 +92,8 @@ public:
     [[nodiscard]] Result<std::vector<daemon::Finding>> preflight();
     /// See printer::acknowledge().
     [[nodiscard]] Result<void> acknowledge(std::uint32_t error);
+    /// See daemon::Operations::accept_printer().
+    [[nodiscard]] Result<void> accept(const std::string& serial_number);
     /// Carries out one of printer::tasks(); `arguments` and the answer are JSON. What disturbs the feeding or loses
     /// what is in the printer is refused while a job is on the line, and a job that is started meanwhile waits for the
     /// end of it: FailureKind::stopped. `check` says whether what empties the FIFO may be done, asked once no job can
@@ -106,6 +115,7 @@ public:
 private:
     // line.cpp: the thread and its orders
     void serve();
+    [[nodiscard]] std::optional<std::chrono::steady_clock::time_point> next_look() const;
     [[nodiscard]] SharedSettings settings() const;
     void event(std::string_view kind, std::optional<spool::JobId> job, std::string message,
                std::optional<RecordNumber> record = {});
@@ -115,7 +125,10 @@ private:
     [[nodiscard]] Result<printer::ClientSettings> client_settings() const;
     [[nodiscard]] std::vector<daemon::Finding> look_at_printer(const printer::ClientSettings& client,
                                                                bool may_be_printing);
+    void glance();
+    void learn_identity(const std::optional<protocol::VersionInfo>& version);
     void hear(const daemon::PreflightFacts& facts);
+    void hear(const printer::Look& look);
     void hear(const daemon::RunProgress& progress);
 
     // line_printing.cpp: from the order to its end
@@ -160,8 +173,14 @@ private:
         std::optional<std::uint32_t> total_prints;
     };
     Heard heard_;
+    std::string known_serial_number_; ///< of the machine that jobs may start on; empty = not known yet
+    std::optional<std::chrono::steady_clock::time_point> looked_at_; ///< as idle; absent = never, or in use since
+    std::optional<daemon::LinkState> link_;                          ///< by the last look; absent as looked_at_
 
     std::shared_ptr<printer::PanelHold> panel_;
+
+    daemon::PrinterWatch watch_; ///< the thread's own
+    std::mutex conversations_;   ///< one at a time, besides printing: the printer may serve no more
 
     std::mutex panel_orders_; ///< one at a time holds or releases the panel, also while the printer is talked to
 

@@ -1,9 +1,11 @@
 // The printer besides printing: a look at it before a start or for whoever asks, one error acknowledged, the panel
 // held. Each is a short conversation on a connection of its own.
+#include "daemon/events.hpp"
 #include "daemon/wall_clock.hpp"
 #include "printer/tasks.hpp"
 #include "service/line.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <utility>
 
@@ -28,13 +30,17 @@ Result<printer::ClientSettings> Line::client_settings() const {
 
 std::vector<daemon::Finding> Line::look_at_printer(const printer::ClientSettings& client, bool may_be_printing) {
     const SharedSettings all = settings();
+    const daemon::PreflightFacts facts = [&] {
+        const std::lock_guard alone{conversations_};
+        return daemon::gather_facts(client);
+    }();
+    hear(facts);
+    learn_identity(facts.version);
     std::string known_serial_number;
     {
         const std::lock_guard lock{mutex_};
-        known_serial_number = heard_.version ? heard_.version->serial_number : "";
+        known_serial_number = known_serial_number_;
     }
-    const daemon::PreflightFacts facts = daemon::gather_facts(client);
-    hear(facts);
     return daemon::judge(facts, {*all, *all->printer(printer_), known_serial_number, may_be_printing});
 }
 
@@ -71,7 +77,10 @@ Result<void> Line::acknowledge(std::uint32_t error) {
     if (!client) {
         return client.error();
     }
-    const auto left = printer::acknowledge(*client, error);
+    const auto left = [&] {
+        const std::lock_guard alone{conversations_};
+        return printer::acknowledge(*client, error);
+    }();
     if (!left) {
         return left.error();
     }
@@ -149,6 +158,94 @@ Result<std::shared_ptr<void>> Line::reserve() {
                                  }};
 }
 
+Result<void> Line::accept(const std::string& serial_number) {
+    const auto client = client_settings();
+    if (!client) {
+        return client.error();
+    }
+    const printer::Look look = [&] {
+        const std::lock_guard alone{conversations_};
+        return printer::look_at(*client);
+    }();
+    if (!look.version) {
+        return Failure{FailureKind::unreachable,
+                       look.unreachable.empty() ? "the printer does not say its serial number" : look.unreachable};
+    }
+    if (look.version->serial_number != serial_number) {
+        return Failure{FailureKind::stopped,
+                       "the printer's serial number is " + look.version->serial_number + ", and not " + serial_number};
+    }
+    auto written =
+        services_.access.write([&](spool::Spool& spool) { return spool.write_serial_number(printer_, serial_number); });
+    if (written) {
+        const std::lock_guard lock{mutex_};
+        known_serial_number_ = serial_number;
+        heard_.version = look.version;
+    }
+    return written;
+}
+
+/// The first machine that answers is the one that is meant.
+void Line::learn_identity(const std::optional<protocol::VersionInfo>& version) {
+    if (!version || version->serial_number.empty()) {
+        return;
+    }
+    {
+        const std::lock_guard lock{mutex_};
+        if (!known_serial_number_.empty()) {
+            return;
+        }
+        known_serial_number_ = version->serial_number;
+    }
+    const auto written = services_.access.write(
+        [&](spool::Spool& spool) { return spool.write_serial_number(printer_, version->serial_number); });
+    if (!written) {
+        event(daemon::event_kind::storage_failed, {}, written.error().message);
+    }
+}
+
+/// One look at the printer while nothing else is done with it, on the thread of the line: a job that is to start waits
+/// for it, so it is short.
+void Line::glance() {
+    constexpr Duration patience = std::chrono::seconds{1};
+    auto client = client_settings();
+    const SharedSettings all = settings();
+    const config::PrinterSettings* const own = all->printer(printer_);
+    if (own == nullptr) {
+        return; // it is being taken away
+    }
+    const std::unique_lock alone{conversations_, std::try_to_lock};
+    std::optional<printer::Look> look;
+    if (client && alone) {
+        client->connect_timeout = std::min(client->connect_timeout, patience);
+        client->reply_timeout = std::min(client->reply_timeout, patience);
+        look = printer::look_at(*client);
+    } else if (!client) {
+        look.emplace().unreachable = client.error().message; // its name cannot be resolved
+    }
+    daemon::PrinterWatch::Known known{*all, *own};
+    {
+        const std::lock_guard lock{mutex_};
+        looked_at_ = std::chrono::steady_clock::now();
+        const bool ours = panel_ && panel_->held(); // on what may be its only connection
+        if (!look || closing_ || (!look->machine && ours)) {
+            return;
+        }
+        known.machine = heard_.machine;
+        known.serial_number = known_serial_number_;
+    }
+    hear(*look);
+    const auto news = watch_.take(*look, known);
+    {
+        const std::lock_guard lock{mutex_};
+        link_ = watch_.link();
+    }
+    for (const daemon::PrinterWatch::News& one : news) {
+        event(one.kind, {}, one.words);
+    }
+    learn_identity(look->version);
+}
+
 Result<void> Line::hold_panel(std::optional<Duration> time) {
     const std::lock_guard orders{panel_orders_};
     std::shared_ptr<printer::PanelHold> panel;
@@ -186,16 +283,20 @@ void Line::hear(const daemon::RunProgress& progress) {
 }
 
 void Line::hear(const daemon::PreflightFacts& facts) {
+    hear(printer::Look{{}, facts.machine, facts.version, facts.counters});
+}
+
+void Line::hear(const printer::Look& look) {
     const std::lock_guard lock{mutex_};
-    if (facts.machine) {
+    if (look.machine) {
         heard_.at_ns = daemon::wall_clock_ns();
-        heard_.machine = facts.machine;
+        heard_.machine = look.machine;
     }
-    if (facts.version) {
-        heard_.version = facts.version;
+    if (look.version) {
+        heard_.version = look.version;
     }
-    if (facts.counters && facts.counters->total) {
-        heard_.total_prints = facts.counters->total;
+    if (look.counters && look.counters->total) {
+        heard_.total_prints = look.counters->total;
     }
 }
 

@@ -39,9 +39,6 @@ Result<std::unique_ptr<Service>> Service::open(ServiceOptions options) {
 void Service::start() {
     event(event_kind::service_started, {}, {}, "linefeedd " + version_ + " has started");
     open_folders();
-    for (const LinePtr& line : lines()) {
-        look_for_work(line->printer());
-    }
 }
 
 Service::~Service() {
@@ -81,6 +78,24 @@ Result<void> Service::recover() {
     });
 }
 
+/// What waited before the service was started does not begin to print because it was: that takes a person.
+Result<Line::Past> Service::past_of(const config::PrinterSettings& printer) {
+    return access_.write([&](spool::Spool& spool) -> Result<Line::Past> {
+        const auto held = spool.printer_held(printer.name);
+        const auto waiting = spool.first_in_queue(printer.name);
+        const auto serial_number = spool.serial_number(printer.name);
+        if (!held || !waiting || !serial_number) {
+            return !held ? held.error() : !waiting ? waiting.error() : serial_number.error();
+        }
+        const bool waits = printer.queue.autostart && waiting->has_value();
+        if (waits && !*held) {
+            event(event_kind::printer_notice, printer.name, (*waiting)->job,
+                  "it waited before the service was started: nothing starts by itself until somebody starts a job");
+        }
+        return Line::Past{*held || waits, *serial_number};
+    });
+}
+
 void Service::open_lines() {
     const LineServices services{
         {feed_, store_}, spool_, access_, events_, [this](const std::string& printer) { look_for_work(printer); }};
@@ -89,8 +104,8 @@ void Service::open_lines() {
         if (line(printer.name) != nullptr) {
             continue;
         }
-        const auto held = access_.write([&](spool::Spool& spool) { return spool.printer_held(printer.name); });
-        auto opened = std::make_shared<Line>(services, printer.name, now, !held || *held);
+        const auto past = past_of(printer);
+        auto opened = std::make_shared<Line>(services, printer.name, now, past ? *past : Line::Past{true, {}});
         const std::lock_guard lock{parts_mutex_};
         lines_.emplace(printer.name, std::move(opened));
     }
@@ -129,6 +144,7 @@ void Service::shut_down() {
     folders.clear();
     for (const LinePtr& line : all) {
         static_cast<void>(line->wait_until_idle());
+        line->close(); // all of them before the first is waited for to its end
     }
     events_.flush();
 }

@@ -112,6 +112,8 @@ public:
     [[nodiscard]] Result<std::vector<daemon::FrameView>> frames(std::string_view printer, bool error) override;
     [[nodiscard]] Result<void> acknowledge(const daemon::Caller& caller, std::string_view printer,
                                            std::uint32_t error) override;
+    [[nodiscard]] Result<void> accept_printer(const daemon::Caller& caller, std::string_view printer,
+                                              const std::string& serial_number) override;
     [[nodiscard]] Result<void> suspend_panel(const daemon::Caller& caller, std::string_view printer, bool suspend,
                                              Duration hold) override;
     [[nodiscard]] Result<std::string> read_file(std::string_view printer, std::string_view path) override;
@@ -131,6 +133,7 @@ private:
 
     Service(ServiceOptions options, spool::Spool spool);
     [[nodiscard]] Result<void> recover();
+    [[nodiscard]] Result<Line::Past> past_of(const config::PrinterSettings& printer);
     void open_lines();
     void open_folders();
 

@@ -66,8 +66,12 @@ Result<intake::Layout> layout_for(const daemon::ImportRequest& request, const co
     if (!request.printer.empty() && printer == nullptr) {
         return Failure{FailureKind::usage, "there is no printer \"" + request.printer + '"'};
     }
-    return layout_of(layout == nullptr ? config::LayoutSettings{} : *layout,
-                     line == nullptr ? protocol::profiles.front() : line->profile());
+    intake::Layout made = layout_of(layout == nullptr ? config::LayoutSettings{} : *layout,
+                                    line == nullptr ? protocol::profiles.front() : line->profile());
+    if (request.sent && !made.graphics_folder) {
+        made.graphics_folder.emplace(); // nowhere
+    }
+    return made;
 }
 
 spool::Ticket ticket_for(const daemon::Caller& caller, const daemon::ImportRequest& request) {

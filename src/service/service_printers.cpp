@@ -31,6 +31,15 @@ Result<void> Service::acknowledge(const daemon::Caller& caller, std::string_view
     });
 }
 
+Result<void> Service::accept_printer(const daemon::Caller& caller, std::string_view printer,
+                                     const std::string& serial_number) {
+    const Act act{"accept", "printer " + std::string{printer}, spool::JsonObject{}.add("serial_number", serial_number)};
+    return audited(caller, act, [&]() -> Result<void> {
+        const auto line = known_line(printer);
+        return line ? (*line)->accept(serial_number) : line.error();
+    });
+}
+
 Result<void> Service::suspend_panel(const daemon::Caller& caller, std::string_view printer, bool suspend,
                                     Duration hold) {
     const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(hold).count();

@@ -22,6 +22,13 @@ Sha256Digest Sha256::finish() {
     return digest;
 }
 
+std::string sha256_hex(std::string_view bytes) {
+    Sha256 sum;
+    sum.update(bytes);
+    const Sha256Digest digest = sum.finish();
+    return to_hex({reinterpret_cast<const char*>(digest.data()), digest.size()});
+}
+
 std::string to_hex(std::string_view bytes) {
     constexpr std::string_view digits = "0123456789abcdef";
     std::string text;

@@ -34,6 +34,9 @@ private:
 /// Lower-case hex digits of bytes.
 [[nodiscard]] std::string to_hex(std::string_view bytes);
 
+/// SHA-256 of bytes that are there as a whole, as such digits.
+[[nodiscard]] std::string sha256_hex(std::string_view bytes);
+
 /// CRC-32 over the job, the first number, the offsets and the frames of a page: a page in the wrong place does not pass
 /// either. `packed_ends` is the form in which the offsets are stored.
 [[nodiscard]] std::uint32_t page_checksum(JobId job, RecordNumber first, std::string_view packed_ends,

@@ -101,6 +101,8 @@ public:
     /// The ready jobs with this content and layout, whatever file they came from, oldest first.
     [[nodiscard]] Result<std::vector<Job>> find_by_content(const std::string& content_sha256,
                                                            const std::string& layout);
+    /// The ready jobs whose first record has this frame, oldest first; none that were imported before schema 4.
+    [[nodiscard]] Result<std::vector<Job>> find_by_first_record(std::string_view frame);
     /// The ready jobs that were imported from this path, oldest first.
     [[nodiscard]] Result<std::vector<Job>> find_by_path(const std::string& path);
     /// The ready jobs that were imported from a source of these bytes, whatever its name and however it was read,
@@ -129,6 +131,10 @@ public:
     /// Whether an operator has stopped a printer, durable at return.
     [[nodiscard]] Result<void> hold_printer(const std::string& printer, bool held);
     [[nodiscard]] Result<bool> printer_held(const std::string& printer);
+
+    /// The serial number of the machine that stands behind the name of a printer; empty = not known yet.
+    [[nodiscard]] Result<std::string> serial_number(const std::string& printer);
+    [[nodiscard]] Result<void> write_serial_number(const std::string& printer, const std::string& serial_number);
     /// A place before all others of the printer's queue, or behind them.
     [[nodiscard]] Result<std::int64_t> first_place(const std::string& printer);
     [[nodiscard]] Result<std::int64_t> last_place(const std::string& printer);

@@ -1,4 +1,5 @@
 // The jobs of a spool: what was imported, from where, and which of them is meant by a source.
+#include "spool/checksum.hpp"
 #include "spool/spool_state.hpp"
 
 #include <limits>
@@ -147,6 +148,17 @@ Result<std::vector<Job>> Spool::find_by_source_bytes(const std::string& sha256) 
         return statement.error();
     }
     return read_jobs(statement->bind(1, sha256), state_->database->path());
+}
+
+Result<std::vector<Job>> Spool::find_by_first_record(std::string_view frame) {
+    static const std::string sql =
+        std::string{select_jobs} +
+        "WHERE id IN (SELECT job FROM job_heads WHERE head = ?1) AND state = 'ready' ORDER BY id";
+    auto statement = state_->database->prepare(sql.c_str());
+    if (!statement) {
+        return statement.error();
+    }
+    return read_jobs(statement->bind(1, sha256_hex(frame)), state_->database->path());
 }
 
 Result<std::vector<Job>> Spool::find_by_path(const std::string& path) {

@@ -150,6 +150,33 @@ Result<bool> Spool::printer_held(const std::string& printer) {
     return statement->bind(1, printer).step();
 }
 
+Result<std::string> Spool::serial_number(const std::string& printer) {
+    auto statement = state_->database->prepare("SELECT serial_number FROM printers WHERE printer = ?1");
+    if (!statement) {
+        return statement.error();
+    }
+    const auto found = statement->bind(1, printer).step();
+    if (!found) {
+        return found.error();
+    }
+    return *found ? std::string{statement->text(0)} : std::string{};
+}
+
+Result<void> Spool::write_serial_number(const std::string& printer, const std::string& serial_number) {
+    if (auto writable = state_->check_writable(); !writable) {
+        return writable;
+    }
+    auto statement =
+        state_->database->prepare("INSERT OR REPLACE INTO printers (printer, serial_number) VALUES (?1, ?2)");
+    if (!statement) {
+        return statement.error();
+    }
+    if (auto done = statement->bind(1, printer).bind(2, serial_number).run(); !done) {
+        return state_->failed_write(done.error());
+    }
+    return {};
+}
+
 namespace {
 
 /// The place of one end of a queue, 0 if it is empty.

@@ -180,8 +180,10 @@ Result<std::int64_t> Spool::last_ledger_row(JobId job) {
     if (!statement) {
         return statement.error();
     }
-    const auto row = statement->bind(1, static_cast<std::int64_t>(job)).step();
-    return row ? Result<std::int64_t>{statement->number(0)} : row.error();
+    if (const auto row = statement->bind(1, static_cast<std::int64_t>(job)).step(); !row) {
+        return row.error();
+    }
+    return statement->number(0);
 }
 
 Result<std::vector<LedgerRow>> Spool::doubt_rows(JobId job, RunId run) {

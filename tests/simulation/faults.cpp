@@ -59,10 +59,11 @@ void Faults::count(Fault fault) {
 }
 
 /// Behind a gap, the number tells where the printer is and the counter how much of that it has printed. When the number
-/// is lost before linefeed has settled the records, the counter alone would have to tell both: nobody can know.
+/// is lost before linefeed has settled the records, or put down that it has seen a gap, the counter alone would have to
+/// tell both: nobody can know.
 bool Faults::memory_may_go() {
     gap_ = gap_ && (host_.running() || host_.records_open());
-    return !gap_;
+    return !gap_ || (!host_.running() && host_.knows_of_gap());
 }
 
 void Faults::excuse_for(Duration duration) {
@@ -232,7 +233,11 @@ void Faults::repair(Fault fault, std::uint64_t) {
         line_.act([](PrinterModel& model, Instant now) { model.press(Action::stop_print, now); });
         return;
     case Fault::another_printer:
-        line_.exchange_printer();
+        if (memory_may_go()) {
+            line_.exchange_printer();
+        } else {
+            repair_later(fault, 1s, 200s);
+        }
         return;
     case Fault::host_power_loss:
     case Fault::both_power_loss:

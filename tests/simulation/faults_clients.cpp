@@ -150,14 +150,20 @@ std::uint64_t Faults::foreign_stop_point() {
 
 /// Out of order. A foreign record that takes the place of ours, with its number, is another's product that the printer
 /// reports and counts as ours: if linefeed does not happen to see that there is one too many in the FIFO, nobody can
-/// know. And a jump that is too small shows no more than a small gap does.
+/// know. Nor can anybody without a counter who looks away while one with an old number of ours comes into an empty
+/// FIFO. And a jump that is too small shows no more than a small gap does.
 std::uint64_t Faults::foreign_number() {
     constexpr std::uint64_t near = 1000;
     const std::uint64_t newest = newest_in_printer();
     const std::uint64_t next = std::max<std::uint64_t>(newest + 1, context_.scenario.first());
     const std::uint64_t printed = line_.look().mail_status().last_printed.value();
     const std::uint64_t number = random_.spread(1, printed > 1 && random_.chance(0.5) ? printed - 1 : 1U << 30U);
-    return (number >= printed && number <= next + near) ? next + near + 1 : number;
+    const bool order_is_checked = context_.scenario.prints_are_counted() || line_.look().fifo().loaded() != nullptr;
+    const std::uint64_t least = order_is_checked ? printed : context_.scenario.first();
+    const bool in_job = number >= context_.scenario.first() && number <= context_.scenario.last();
+    const bool stands_for_ours = in_job && !judge_.is_on_a_product(RecordNumber{static_cast<std::uint32_t>(number)});
+    const bool small_jump = number >= least && number <= next + near;
+    return stands_for_ours || small_jump ? next + near + 1 : number;
 }
 
 } // namespace linefeed::simulation

@@ -157,9 +157,12 @@ void Host::end_process(OutcomeCode code) {
     ending_.in_doubt.clear();
     ending_.complete = false;
     records_open_ = true;
+    knows_of_gap_ = false;
     if (spool_) {
         if (const auto state = spool_->ledger_state(job_)) {
             records_open_ = state->count(spool::RecordState::open) > RecordCount{0};
+            const auto open = daemon::find_open_issue(*spool_, job_);
+            knows_of_gap_ = open && *open && (*open)->facts.unclear;
             judge_.check_ledger(*state);
             ending_.in_doubt = state->ranges(spool::RecordState::in_doubt);
             for (const RecordRange& doubt : ending_.in_doubt) {
@@ -248,6 +251,7 @@ void Host::die() {
     paused_until_ = {};
     ending_ = {OutcomeCode::link_lost, {}, false}; // the operator is told nothing
     records_open_ = true;
+    knows_of_gap_ = false;
     context_.after(random_.spread(Duration{std::chrono::milliseconds{50}}, Duration{std::chrono::seconds{60}}),
                    EventKind::operator_acts);
 }

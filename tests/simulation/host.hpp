@@ -41,6 +41,8 @@ public:
     [[nodiscard]] std::optional<feeder::Phase> phase() const;
     /// Records were issued whose fate the ledger does not know. Precondition: not running.
     [[nodiscard]] bool records_open() const { return records_open_; }
+    /// And it remembers that some of them may have been left out.
+    [[nodiscard]] bool knows_of_gap() const { return knows_of_gap_; }
     /// Nothing is left to be sent in this run.
     [[nodiscard]] bool all_sent() const;
     /// When this run has taken over an earlier one, found printing; absent = it has not.
@@ -103,6 +105,7 @@ private:
     bool word_counts_ = false;
     bool interrupted_ = false;
     bool records_open_ = false;
+    bool knows_of_gap_ = false;
     Instant paused_until_{};
     std::uint64_t refusals_before_ = 0; ///< of the disk, as the program was started
     std::uint64_t generation_ = 0;

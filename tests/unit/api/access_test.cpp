@@ -75,7 +75,7 @@ Header header_for(const Route& route) {
     Header header{std::string{to_string(route.method)}, path, false, {{"host", "[::1]:8631"}}, std::nullopt, false};
     if (route.method == Method::post) {
         header.fields.emplace_back("idempotency-key", "k");
-        header.fields.emplace_back("content-type", "application/json");
+        header.fields.emplace_back("content-type", route.body == Body::file ? media::bytes : media::json);
         header.content_length = 2;
     }
     return header;

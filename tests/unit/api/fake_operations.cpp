@@ -288,7 +288,7 @@ std::vector<FolderView> FakeOperations::folders() {
 Result<std::vector<EventView>> FakeOperations::events(std::uint64_t after, std::size_t limit) {
     const std::lock_guard lock{mutex_};
     std::vector<EventView> found;
-    for (std::size_t k = after; k < events_.size() && found.size() < limit; ++k) {
+    for (std::size_t k = std::max<std::size_t>(after, pruned_); k < events_.size() && found.size() < limit; ++k) {
         found.push_back(events_[k]);
     }
     return found;
@@ -431,6 +431,13 @@ Result<std::string> FakeOperations::command(const Caller& caller, std::string_vi
         return known ? changed.error() : known.error();
     }
     return R"({"what":")" + std::string{what} + R"(","arguments":)" + std::string{arguments} + '}';
+}
+
+Result<void> FakeOperations::accept_printer(const Caller& caller, std::string_view printer,
+                                            const std::string& serial_number) {
+    const auto known = check_printer(printer);
+    const auto changed = change(caller, "accept", std::string{printer} + ' ' + serial_number);
+    return known ? changed : known;
 }
 
 Result<void> FakeOperations::suspend_panel(const Caller& caller, std::string_view printer, bool suspend,

@@ -31,6 +31,8 @@ public:
     /// Every change waits until it is let go on.
     void hold(bool held) { held_ = held; }
     void add_event(std::string kind, std::string message);
+    /// The first so many are not kept any more.
+    void prune_events(std::size_t count) { pruned_ = count; }
     [[nodiscard]] std::size_t changes() { return audit_size(); }
     [[nodiscard]] std::string last_change();
     [[nodiscard]] std::optional<daemon::ImportRequest> last_import();
@@ -66,6 +68,8 @@ public:
     Result<void> reprint(const daemon::Caller& caller, spool::JobId id, const daemon::ReprintRequest& request) override;
     Result<void> settle(const daemon::Caller& caller, spool::JobId id, const daemon::SettleRequest& request) override;
     Result<void> acknowledge(const daemon::Caller& caller, std::string_view printer, std::uint32_t error) override;
+    Result<void> accept_printer(const daemon::Caller& caller, std::string_view printer,
+                                const std::string& serial_number) override;
     Result<void> suspend_panel(const daemon::Caller& caller, std::string_view printer, bool suspend,
                                Duration hold) override;
     Result<std::string> read_file(std::string_view printer, std::string_view path) override;
@@ -94,6 +98,7 @@ private:
     std::vector<daemon::PrinterView> printers_;
     std::map<spool::JobId, daemon::JobView> jobs_;
     std::vector<daemon::EventView> events_;
+    std::atomic<std::size_t> pruned_{0};
     std::vector<daemon::AuditView> audit_;
     std::map<std::uint64_t, std::function<void()>> subscribers_;
     std::uint64_t next_subscription_ = 1;

@@ -67,6 +67,8 @@ void obey(const std::string& line, api::FakeOperations& operations) {
         for (int k = 0; k < std::stoi(first); ++k) {
             operations.add_event("job.queued", std::string(static_cast<std::size_t>(std::stoi(rest)), 'x'));
         }
+    } else if (what == "prune") {
+        operations.prune_events(static_cast<std::size_t>(std::stoi(first)));
     } else if (what == "fail") {
         operations.fail(first.empty() ? std::nullopt : std::optional{Failure{kind_of(first), rest}});
     } else if (what == "forget") {

@@ -37,7 +37,7 @@ class Schemas(unittest.TestCase):
     """Every route of openapi.yaml is there, and what it answers fits the schema of that status and type."""
 
     BODIES = {
-        "printerStart": {"job": 12}, "printerAcknowledge": {"error": 1223}, "printerSuspend": {"suspend": True},
+        "printerStart": {"job": 12}, "printerAcknowledge": {"error": 1223}, "printerAccept": {"serial_number": "104711"}, "printerSuspend": {"suspend": True},
         "printerCommand": {"what": "outputs set", "output": 3, "state": "on"},
         "jobQueue": {"printer": "line1"}, "jobReprint": {"records": "1-5", "reason": "smudged"},
         "jobSettle": {"last_printed": "17"}, "import": {"file": "/etc/hostname"},
@@ -664,6 +664,23 @@ class Events(unittest.TestCase):
             self.assertEqual(self.read(file, 1)[0][0], 605)
             raw.close()
 
+    def test_a_reader_who_comes_too_late_is_told_that_he_missed_something(self):
+        with Service() as service:
+            service.tell("events 3 10")
+            service.tell("prune 4")
+            for position, gap in ((b"1", {"after": 1, "first": 5}), (b"4", None), (b"0", None)):
+                raw, file = self.open(service, b"Last-Event-ID: " + position + b"\r\n")
+                lines = self.head(file) + self.head(file)  # and "retry"
+                first = [file.readline().decode().strip() for _ in range(3)]
+                if gap:
+                    self.assertEqual(first[0], "event: gap", lines)
+                    self.assertEqual(json.loads(first[1].removeprefix("data: ")), gap)
+                    self.assertEqual(first[2], "", "without a number")
+                    self.assertEqual(self.read(file, 1)[0][0], 5)
+                else:
+                    self.assertEqual(first[0], "id: 5", lines)
+                raw.close()
+
     def test_many_listeners_hear_everything_while_one_does_not_listen(self):
         with Service() as service:
             deaf, _ = self.open(service, b"Last-Event-ID: 0\r\n")
@@ -777,7 +794,7 @@ class Metrics(unittest.TestCase):
             self.assertEqual([], connected, "an idle printer is not one whose link is lost")
 
     def test_every_name_that_was_promised_is_there(self):
-        names = """build_info start_time_seconds printer_up printer_link_up printer_printing printer_error_code printer_fifo_entries
+        names = """build_info start_time_seconds printer_up printer_link_up printer_cover_open printer_other_machine printer_printing printer_error_code printer_fifo_entries
             printer_fifo_depth_entries printer_credit_records printer_print_rate_per_second printer_time_to_empty_seconds printer_data_left_seconds
             printer_queue_jobs printer_in_doubt_records printer_records_total printer_underruns_total printer_refills_total
             printer_links_lost_total printer_frames_unexpected_total printer_damaged_bytes_total printer_lead_time_seconds printer_refill_seconds

@@ -394,6 +394,19 @@ TEST_F(Commands, shouldShowEachEventOnceOverALostConnection) {
     EXPECT_THAT(asked, ElementsAre("7", "8", "9"));
 }
 
+TEST_F(Commands, shouldSayWhichEventsAreNotKeptAnyMore) {
+    service.answer("GET /api/v1/events?limit=1000&after=3", page({event_json(7, "job.started", "seven")}));
+    service.stream("GET /api/v1/events/stream", streamed(event_json(10, "job.printing", "ten")));
+    service.problem("GET /api/v1/events/stream", 401, "usage", "enough");
+    EventsOptions options;
+    options.common = common();
+    options.after = 3;
+    options.follow = true;
+    const Said said = run(run_events, options);
+    EXPECT_THAT(said.err, HasSubstr("the events 4 to 6 are not kept any more"));
+    EXPECT_THAT(said.err, HasSubstr("the events 8 to 9 are not kept any more"));
+}
+
 TEST_F(Commands, shouldShowOnlyEventsThatAreAskedFor) {
     Json other = event_json(2, "job.started", "other");
     other["printer"] = "line2";

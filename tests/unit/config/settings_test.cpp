@@ -46,9 +46,11 @@ layouts:
   b: {query: SELECT 1}
 printers:
   p: {address: "tcp://10.0.0.1:3002", profile: jet2neo, job_file: 'FFSDISK\JOBS\a.job', open_nozzle: true, errors: {5043: report},
-      poll_min: 400 us, poll_max: 1 s, connect_timeout: 1 s, reply_timeout: 500 ms, queue: {autostart: true, chain: stop}}
+      poll_min: 400 us, poll_max: 1 s, connect_timeout: 1 s, reply_timeout: 500 ms, watch_interval: 1 min,
+      queue: {autostart: true, chain: stop}}
 folders:
-  f: {path: /d, layout: a, printer: p, pattern: "*.csv", autostart: true, watch: poll, settle: done-companion, poll_interval: 1 h}
+  f: {path: /d, layout: a, printer: p, pattern: "*.csv", autostart: true, watch: poll, settle: done-companion, poll_interval: 1 h,
+      grown_files: print}
 )",
                                          "/etc/f.yaml", {});
     ASSERT_TRUE(settings) << testing::PrintToString(lines_of(settings.error()));
@@ -73,12 +75,14 @@ folders:
     EXPECT_EQ(printer.job_file, "FFSDISK\\JOBS\\a.job");
     EXPECT_EQ(printer.pacing.poll_min, 400us);
     EXPECT_EQ(printer.reply_timeout, 500ms);
+    EXPECT_EQ(printer.watch_interval, 1min);
     EXPECT_EQ(printer.queue.chain, Chain::stop);
     EXPECT_EQ(printer.errors.at(5043), ErrorPolicy::report);
     const FolderSettings& folder = settings->folders.front();
     EXPECT_EQ(folder.watch, Watch::poll);
     EXPECT_EQ(folder.settle, Settle::done_companion);
     EXPECT_EQ(folder.poll_interval, 1h);
+    EXPECT_EQ(folder.grown_files, GrownFiles::print);
 }
 
 TEST(SettingsFile, shouldTellAllProblemsInTheOrderOfTheFile) {
@@ -91,11 +95,21 @@ TEST(SettingsFile, shouldTellAllProblemsInTheOrderOfTheFile) {
                     "tokens_file, hosts, origins, max_body, max_header, max_connections or request_timeout",
                     "f.yaml:6:6: printers.p.address: missing: this key must be there",
                     "f.yaml:6:7: printers.p.adress: unknown key; did you mean \"address\"? allowed here: address, "
-                    "profile, job_file, open_nozzle, errors, poll_min, poll_max, connect_timeout, reply_timeout "
-                    "or queue"));
+                    "profile, job_file, open_nozzle, errors, poll_min, poll_max, connect_timeout, reply_timeout, "
+                    "watch_interval or queue"));
     EXPECT_THAT(
         refusals_of("real_time: {colour: red}\n"),
         ElementsAre("f.yaml:1:13: real_time.colour: unknown key; allowed here: priority, processor or lock_memory"));
+}
+
+TEST(SettingsFile, shouldKnowThatAPrinterIsNotWatched) {
+    const auto text = [](const std::string& interval) {
+        return "printers:\n  p: {address: tcp://h, watch_interval: " + interval + "}\n";
+    };
+    EXPECT_THAT(refusals_of(text("0 s")), IsEmpty());
+    EXPECT_THAT(refusals_of(text("1 s")), IsEmpty());
+    EXPECT_THAT(refusals_of(text("999 ms")),
+                ElementsAre("f.yaml:2:41: printers.p.watch_interval: must be 0 s (never), or 1 s at least"));
 }
 
 TEST(SettingsFile, shouldTakeTheFirstOfADoubledKeyAndSaySo) {

@@ -91,11 +91,21 @@ TEST(EvidenceJson, shouldReadBackThatAPrintMayBeBrokenOff) {
                             RecordNumber{4294967295}};
     EXPECT_EQ(outcome_json(outcome), R"({"outcome":"link_lost","machine":"ready for print start","error":-1711274809,)"
                                      R"("broken_off":4294967295})");
-    EXPECT_EQ(parse_broken_off(outcome_json(outcome)), RecordNumber{4294967295});
+    EXPECT_EQ(parse_run_end(outcome_json(outcome)), (RunEnd{RecordNumber{4294967295}, false}));
     outcome.broken_off = RecordNumber{};
-    EXPECT_EQ(parse_broken_off(outcome_json(outcome)), RecordNumber{});
-    EXPECT_EQ(parse_broken_off(R"({"broken_off":"7"})"), RecordNumber{});
-    EXPECT_EQ(parse_broken_off("{"), std::nullopt);
+    EXPECT_EQ(parse_run_end(outcome_json(outcome)), RunEnd{});
+    EXPECT_EQ(parse_run_end(R"({"broken_off":"7"})"), RunEnd{});
+    EXPECT_EQ(parse_run_end("{"), std::nullopt);
+}
+
+TEST(EvidenceJson, shouldReadBackThatNobodyKnewTheRecords) {
+    feeder::Outcome outcome;
+    outcome.code = feeder::OutcomeCode::link_lost;
+    outcome.unclear = true;
+    EXPECT_EQ(outcome_json(outcome), R"({"outcome":"link_lost","machine":"standby","unclear":true})");
+    EXPECT_EQ(parse_run_end(outcome_json(outcome)), (RunEnd{RecordNumber{}, true}));
+    EXPECT_EQ(parse_run_end(R"({"unclear":false,"other":true})"), RunEnd{});
+    EXPECT_EQ(parse_run_end(R"({"unclear":1,"of":{"unclear":true}})"), RunEnd{});
 }
 
 } // namespace

@@ -199,6 +199,30 @@ TEST_F(LedgerKeeperTest, shouldFindAPrintThatMayBeBrokenOffInWhatARunLeftOpen) {
     EXPECT_TRUE(spool_->verify_ledger());
 }
 
+TEST_F(LedgerKeeperTest, shouldFindThatThePrinterLeftRecordsOutInARunThatIsOpen) {
+    feeder::Outcome outcome = ended(feeder::OutcomeCode::link_lost);
+    for (const bool unclear : {true, false}) {
+        LedgerKeeper ledger = keeper();
+        ASSERT_TRUE(ledger.grant(begin()));
+        outcome.unclear = unclear;
+        ASSERT_TRUE(ledger.finish(outcome));
+        EXPECT_EQ(find_open_issue(*spool_, job_).value()->facts.unclear, unclear);
+        ASSERT_TRUE(keeper().settle_earlier(verdict({}, {}, closed(1, 512))));
+    }
+}
+
+TEST_F(LedgerKeeperTest, shouldRememberOnceThatALaterLookFoundRecordsLeftOut) {
+    crash();
+    const std::size_t rows = kinds().size();
+    feeder::Outcome outcome = ended(feeder::OutcomeCode::link_lost);
+    outcome.unclear = true;
+    for (int looks = 0; looks < 2; ++looks) {
+        ASSERT_TRUE(keeper().finish(outcome));
+        EXPECT_TRUE(find_open_issue(*spool_, job_).value()->facts.unclear);
+        EXPECT_EQ(kinds().size(), rows + 1);
+    }
+}
+
 TEST_F(LedgerKeeperTest, shouldHaveNothingToSayOfABrokenOffPrintWhereNothingWasIssued) {
     feeder::Outcome outcome = ended(feeder::OutcomeCode::no_answer);
     outcome.broken_off = RecordNumber{77};

@@ -99,11 +99,18 @@ TEST_F(PreflightTest, shouldNoticeAnotherPrinterAtTheSameAddress) {
     known_serial_ = "104711";
     EXPECT_THAT(finding("identity"), HasSubstr("ok: "));
     known_serial_ = "99";
-    EXPECT_THAT(finding("identity"), HasSubstr("warning: JET3up, firmware V62.0.9.0, serial number 104711; last time "
-                                               "the serial number here was 99 - "));
+    printer_.name = "line1";
+    EXPECT_THAT(finding("identity"), HasSubstr("problem: JET3up, firmware V62.0.9.0, serial number 104711; the serial "
+                                               "number here was 99 - If the printer was exchanged, accept it: linefeed "
+                                               "printer line1 accept 104711."));
+    EXPECT_FALSE(may_start(findings()));
     facts_.version->serial_number.clear();
-    EXPECT_THAT(finding("identity"), HasSubstr("ok: "));
+    EXPECT_THAT(finding("identity"), HasSubstr("warning: the printer does not say its serial number; it was 99 - "));
+    facts_.version.reset();
+    EXPECT_THAT(finding("identity"), HasSubstr("warning: the printer does not say its serial number; it was 99 - "));
     EXPECT_TRUE(may_start(findings()));
+    known_serial_.clear();
+    EXPECT_EQ(finding("identity"), "none");
 }
 
 TEST_F(PreflightTest, shouldNoticeAProfileOfAnotherKind) {

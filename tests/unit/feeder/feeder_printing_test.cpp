@@ -34,6 +34,14 @@ TEST(FeederPrinting, shouldFollowTheManualToTheEnd) {
     story.expect("end: finished (ready for print start, error 0)");
 }
 
+TEST(FeederPrinting, shouldTellTheStatusAsLastReported) {
+    Story story = reach(Phase::printing);
+    EXPECT_EQ(story.feeder.machine().machine, State::printing);
+    story.rs(State::printing, raw_error(4711, 1), true);
+    EXPECT_EQ(story.feeder.machine().error.code(), 4711U);
+    EXPECT_TRUE(story.feeder.machine().cover_open);
+}
+
 TEST(FeederPrinting, shouldGiveTheReportWithTheConfirmation) {
     Story story = reach(Phase::printing);
     story.sm(1, 102, 110);

@@ -1,6 +1,8 @@
 // The stop point in all its ways: kept, kept late, ignored, gone, and somebody else's.
 #include "story.hpp"
 
+#include <gmock/gmock.h>
+
 namespace linefeed::feeder {
 namespace {
 
@@ -340,6 +342,31 @@ TEST(FeederStopPoint, shouldStopWhenTheCounterShowsRecordsThrownAwayUnseen) {
     EXPECT_EQ(story.take().find("printed through"), std::string::npos);
     story.cc(1005);
     story.expect("!ST; ?RS");
+}
+
+TEST(FeederStopPoint, shouldStopWhenTheWholeFifoWasThrownAwayUnseen) {
+    for (const std::uint32_t entries : {0U, 1U}) {
+        Story story = printing_without_stop_point();
+        story.sm(3, 77, 0);
+        story.sm(0, 103, 0); // 104 is loaded
+        story.cc(1003);
+        story.sm(3, 103, 0); // 105-107 are behind it
+        story.sm(3, 103, 0);
+        story.wait(milliseconds{500});
+        story.take();
+        story.sm(entries, 103, 0); // a stop, and a start at the panel, or another client's flush
+        story.rs(State::printing);
+        story.expect("");
+        story.wait(milliseconds{500});
+        story.sm(entries, 103, 0);
+        story.take();
+        story.rs(State::printing);
+        story.expect(entries == 0 ? "!ST; ?RS" : ""); // the counter will tell as it prints on
+        if (entries == 0) {
+            story.judge(0, 103, true, 1003);
+            EXPECT_THAT(story.take(), testing::HasSubstr("unused 104-107"));
+        }
+    }
 }
 
 TEST(FeederStopPoint, shouldStopAPrinterThatWasStoppedAndStartedAgainBehindOurBack) {

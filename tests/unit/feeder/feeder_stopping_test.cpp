@@ -2,6 +2,8 @@
 // each record.
 #include "story.hpp"
 
+#include <gmock/gmock.h>
+
 namespace linefeed::feeder {
 namespace {
 
@@ -387,6 +389,61 @@ TEST(FeederStopping, shouldNotBelieveTheEndMessageOfAPrinterThatWasStartedAgain)
     story.take();
     story.judge(0, 110, true, 1008, end_message);
     EXPECT_NE(story.take().find("printed none, in doubt 109-110, unused none by no evidence"), std::string::npos);
+}
+
+/// Nothing but an answer between the two tells that the print was broken off.
+TEST(FeederStopping, shouldDoubtAPrintThatWasNotFinishedWhenThePrinterWasStartedAgain) {
+    for (const bool asked_once : {true, false}) {
+        Story story = reach(Phase::printing);
+        story.sm(3, 101, 110);
+        for (int asked = 0; asked < 4; ++asked) {
+            story.wait(std::chrono::milliseconds{500});
+        }
+        story.expect("?SM; ?RS; ?SM; ?SM; ?SM");
+        story.rs(State::ready_to_print);
+        story.sm(0, 102, 110, false);
+        if (!asked_once) {
+            story.sm(0, 102, 110, false);
+            story.sm(0, 103, 110); // printed on by now
+        }
+        story.rs(State::printing);
+        story.take();
+        story.judge(0, 104, true, 1004);
+        EXPECT_THAT(story.take(), testing::HasSubstr("printed none, in doubt 102-104")) << asked_once;
+    }
+}
+
+TEST(FeederStopping, shouldSayThatNobodyKnowsWhichRecordsWerePrinted) {
+    Story story = reach(Phase::printing);
+    story.stop();
+    story.judge_unsettled(0, 104, true, 1002); // two of four
+    story.link_lost();
+    EXPECT_TRUE(std::get<End>(story.actions[story.actions.size() - 1]).outcome.unclear);
+
+    Story next{quick_settings(), plan_with(earlier_run())};
+    next.identify();
+    next.locate(150, 920);
+    next.link_lost();
+    EXPECT_TRUE(std::get<End>(next.actions[next.actions.size() - 1]).outcome.unclear);
+}
+
+TEST(FeederStopping, shouldSayThatAnOpenRunMayHaveLeftRecordsOut) {
+    Story story = reach(Phase::printing);
+    story.stop();
+    story.rs(State::ready_to_print);
+    story.rs(State::printing);
+    story.take();
+    story.link_lost();
+    EXPECT_TRUE(std::get<End>(story.actions[0]).outcome.unclear);
+
+    FeederPlan plan = plan_with(earlier_run());
+    for (const bool unclear : {true, false}) {
+        plan.open->unclear = unclear;
+        Story next{quick_settings(), plan};
+        next.identify();
+        next.link_lost();
+        EXPECT_EQ(std::get<End>(next.actions[0]).outcome.unclear, unclear) << "nobody has settled it yet";
+    }
 }
 
 TEST(FeederStopping, shouldLeaveAnErrorAloneThatIsNotOfMailing) {

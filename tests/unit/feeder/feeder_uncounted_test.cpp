@@ -2,6 +2,8 @@
 // Only its stop point shows that, and the FIFO before the start.
 #include "story.hpp"
 
+#include <gmock/gmock.h>
+
 namespace linefeed::feeder {
 namespace {
 
@@ -103,6 +105,59 @@ TEST(FeederUncounted, shouldStopWhenARecordIsMissingInThePrinter) {
     EXPECT_NE(story.take().find("in doubt none, unused 105-105"), std::string::npos) << "it stops before the gap";
 }
 
+TEST(FeederUncounted, shouldDoubtTheNumberOfAPrinterThatFindsItsNumbersOutOfOrder) {
+    for (const std::uint32_t error : {1018U, 1019U, 4711U}) {
+        Story story = printing();
+        story.sm(2, 101, 110);
+        story.take();
+        story.judge(0, 103, true, std::nullopt, raw_error(error)); // another client's 103, behind our 104?
+        const std::string verdict = error == 4711 ? "unused 104-105" : "in doubt 101-105";
+        EXPECT_THAT(story.take(), testing::HasSubstr(verdict)) << error;
+    }
+}
+
+TEST(FeederUncounted, shouldDoubtWhatMayHaveBeenSkippedBehindAnEmptyFifo) {
+    for (const std::uint32_t next : {105U, 106U}) {
+        Story story = printing();
+        story.sm(0, 104, 110); // empty, or one is loaded
+        story.supplied(Story::last);
+        story.take();
+        story.sm(0, next, 110); // 105 is next; 106 may have come first if 105 was lost on its way
+        const bool stopped = story.take().find("!ST; ?RS") != std::string::npos;
+        EXPECT_EQ(stopped, next == 106);
+        story.judge(0, next);
+        const std::string doubt = next == 105 ? "in doubt none" : "in doubt 105-108";
+        EXPECT_THAT(story.take(), testing::HasSubstr(doubt)) << next;
+    }
+}
+
+TEST(FeederUncounted, shouldBelieveALeapOverRecordsThatWereSeenInThePrinter) {
+    Story story = printing();
+    story.sm(0, 101, 110); // perhaps damaged: it held up to 104 before
+    story.take();
+    story.sm(0, 104, 110);
+    EXPECT_EQ(story.take().find("!ST"), std::string::npos);
+}
+
+TEST(FeederUncounted, shouldPrintARecordOnceMoreWhoseNumberStandsThereFromBefore) {
+    Story story; // the print of 101 was broken off; the operator has it printed again
+    story.identify();
+    story.locate(101, std::nullopt);
+    story.granted();
+    story.sm(0, 101, 0, false);
+    story.sm(0, 101, 110, false);
+    story.supplied(Story::last);
+    story.sm(3, 101, 110, false);
+    story.wait(milliseconds{4});
+    story.rs(State::printing);
+    for (int answers = 0; answers < 4; ++answers) {
+        story.sm(2, 101, 110); // printed: nothing is missing
+    }
+    story.take();
+    story.sm(1, 102, 110);
+    story.expect("=MR 105-106");
+}
+
 TEST(FeederUncounted, shouldAskAgainForACounterThatOnlyGotDamaged) {
     Story story;
     story.identify();
@@ -124,7 +179,6 @@ TEST(FeederUncounted, shouldAskAgainForACounterThatOnlyGotDamaged) {
 
 TEST(FeederUncounted, shouldDoubtWhatIsPrintedBetweenTheLooks) {
     Story story = printing();
-    EXPECT_EQ(story.feeder.machine().machine, State::printing);
     story.stop();
     story.judge_unsettled(2, 102);
     story.clear_fifo(104); // somebody has started it before the flush
@@ -147,12 +201,18 @@ TEST(FeederUncounted, shouldTakeNoUnfinishedPrintOverForSure) {
     }
 }
 
-TEST(FeederUncounted, shouldBelieveTheNumbersOfACounterThatAppearsInMidRun) {
+TEST(FeederUncounted, shouldBelieveTheNumbersOfAPrinterWhoseCounterAppearsInMidRun) {
     Story story = printing();
-    story.sm(0, 104, 110);
-    story.take();
-    story.cc(1004); // nobody knows where it began
-    story.expect("");
+    story.sm(1, 102, 110);
+    story.sm(3, 102, 110);
+    EXPECT_NE(story.take().find("printed through 102"), std::string::npos);
+    for (int looks = 0; looks < 3; ++looks) {
+        story.cc(1); // nobody knows where it began, so it cannot be behind
+        story.wait(CounterProof::patience);
+        story.sm(3, 102, 110);
+    }
+    EXPECT_EQ(story.take().find("!ST"), std::string::npos);
+    EXPECT_EQ(story.phase(), Phase::printing);
 }
 
 TEST(FeederUncounted, shouldTakeOverOnlyWhereTheStopPointStands) {

@@ -314,6 +314,13 @@ TEST(Reconcile, shouldBoundTheDoubtByTheCounterAfterAPowerCycle) {
               "printed none, in doubt 111-116, unused 117-120 by total print counter");
 }
 
+TEST(Reconcile, shouldDoubtEverythingAfterAPowerCycleWhenRecordsWereLeftOut) {
+    OpenRun run = run_with(100);
+    EXPECT_EQ(verdict(run, says(0, 1004)), "printed none, in doubt 101-105, unused 106-120 by total print counter");
+    run.unclear = true; // 101, 102, 117 and 118, perhaps
+    EXPECT_EQ(verdict(run, says(0, 1004)), doubt_from_101);
+}
+
 TEST(Reconcile, shouldDoubtEverythingAfterAPowerCycleWhenTheCounterCannotBe) {
     EXPECT_EQ(verdict(run_with(110), says(0, 1021)), doubt_from_111) << "more than were issued";
     EXPECT_EQ(verdict(run_with(110), says(0, 1009)), doubt_from_111) << "fewer than are confirmed";

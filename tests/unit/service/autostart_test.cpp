@@ -139,20 +139,41 @@ TEST_F(AutostartTest, shouldComeBackStandingAndPrintNothingByItself) {
     EXPECT_EQ(printer.products(), serials(1, 520));
 }
 
-TEST_F(AutostartTest, shouldStartAtTheStartOfTheServiceWhatWasNeverBegun) {
-    std::string address;
-    {
-        SimulatedPrinter printer{directory_ / "tape.csv", 1000};
-        address = printer.address();
-        open(settings_text({address}, {},
-                           "folders:\n  in: {path: " + folder().string() + ", layout: serials, printer: line1}\n"));
-        static_cast<void>(import(20, 1, "line1", true));
-        service_.reset();
-        open(settings(address));
-        EXPECT_TRUE(wait_until([&] { return service_->jobs({.phases = {JobPhase::finished}})->size() == 1; }));
-        service_.reset();
-        EXPECT_EQ(printer.products(), serials(1, 20));
-    }
+/// It was never begun, and may start by itself; but not because the service was started.
+TEST_F(AutostartTest, shouldStartNothingThatWaitedBeforeTheServiceWasStarted) {
+    SimulatedPrinter printer{directory_ / "tape.csv", 1000};
+    open(settings_text({printer.address()}, {},
+                       "folders:\n  in: {path: " + folder().string() + ", layout: serials, printer: line1}\n"));
+    const spool::JobId a = import(20, 1, "line1", true);
+    EXPECT_EQ(view(a).phase, JobPhase::queued);
+    service_.reset();
+    open(settings(printer.address()));
+    drop("b.csv", 20, 21);
+    const spool::JobId b = job_named("b.csv");
+    std::this_thread::sleep_for(std::chrono::milliseconds{300});
+    EXPECT_EQ(view(a).phase, JobPhase::queued);
+    EXPECT_EQ(view(b).phase, JobPhase::queued) << "it does not overtake";
+    EXPECT_TRUE(service_->printer("line1")->held);
+    EXPECT_THAT(event_kinds(), Contains("printer.notice"));
+    ASSERT_EQ(service_->start_next(anna, "line1").value(), a);
+    ASSERT_TRUE(comes_to(b, JobPhase::finished)) << "from then on by itself again";
+    service_.reset();
+    EXPECT_EQ(printer.products(), serials(1, 40));
+}
+
+/// Nobody has to restart anything to let a queue start by itself.
+TEST_F(AutostartTest, shouldStartWhatWaitsWhenTheSettingsBeginToAllowIt) {
+    SimulatedPrinter printer{directory_ / "tape.csv", 1000};
+    open(settings_text({printer.address()}));
+    const spool::JobId a = import(20, 1, "line1", true);
+    service_.reset();
+    open(settings_text({printer.address()}));
+    EXPECT_FALSE(service_->printer("line1")->held);
+    text_ = settings(printer.address());
+    ASSERT_TRUE(service_->reload(anna));
+    ASSERT_TRUE(comes_to(a, JobPhase::finished));
+    service_.reset();
+    EXPECT_EQ(printer.products(), serials(1, 20));
 }
 
 TEST_F(AutostartTest, shouldStartNothingByItselfOnALineThatAnOperatorHasStopped) {

@@ -84,6 +84,38 @@ TEST_F(SpoolTicketsTest, shouldListWhatWasBegun) {
     EXPECT_THAT(jobs_of(spool.begun_jobs()), ElementsAre(b));
 }
 
+TEST_F(SpoolTicketsTest, shouldKeepWhichMachineStandsBehindTheNameOfAPrinter) {
+    {
+        Spool spool = open();
+        EXPECT_EQ(spool.serial_number("line1").value(), "");
+        ASSERT_TRUE(spool.write_serial_number("line1", "104711"));
+        ASSERT_TRUE(spool.write_serial_number("line2", "7"));
+        ASSERT_TRUE(spool.write_serial_number("line1", "104712"));
+    }
+    Spool spool = open();
+    EXPECT_EQ(spool.serial_number("line1").value(), "104712");
+    EXPECT_EQ(spool.serial_number("line2").value(), "7");
+}
+
+TEST_F(SpoolTicketsTest, shouldFindJobsByTheirFirstRecord) {
+    Spool spool = open();
+    const JobId a = make_job(spool, 10).id;
+    const JobId b = make_job(spool, 30).id;
+    const RecordPage page = spool.read_page(a, RecordNumber{1}).value();
+    const auto found = [&](RecordNumber number) {
+        std::vector<JobId> ids;
+        for (const Job& job : spool.find_by_first_record(page.slice({number, RecordCount{1}})).value()) {
+            ids.push_back(job.id);
+        }
+        return ids;
+    };
+    EXPECT_THAT(found(RecordNumber{1}), ElementsAre(a, b));
+    EXPECT_THAT(found(RecordNumber{2}), IsEmpty());
+    ASSERT_TRUE(spool.remove_job(a));
+    EXPECT_THAT(found(RecordNumber{1}), ElementsAre(b));
+    EXPECT_EQ(sql("SELECT count(*) FROM job_heads"), "1");
+}
+
 TEST_F(SpoolTicketsTest, shouldLoseTheTicketWithItsJob) {
     Spool spool = open();
     const JobId job = make_job(spool, 10).id;

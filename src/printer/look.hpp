@@ -1,0 +1,23 @@
+// A glance at a printer that nobody feeds: what state it is in, which machine it is, how much it has printed.
+#pragma once
+
+#include "printer/printer_client.hpp"
+
+#include <optional>
+#include <string>
+
+namespace linefeed::printer {
+
+/// What the printer said. Absent = it did not answer, or was not asked, as in standby.
+struct Look {
+    std::string unreachable; ///< why nothing is known of it; empty = it has answered
+    std::optional<protocol::MachineStatus> machine;
+    std::optional<protocol::VersionInfo> version;
+    std::optional<protocol::Counters> counters;
+};
+
+/// `?RS`, `?VS` and `?CC` on a connection of its own, which is closed again: a printer that serves one at a time stays
+/// free for others. Blocks: at most a connection time-out for each endpoint and three reply time-outs.
+[[nodiscard]] Look look_at(const ClientSettings& settings);
+
+} // namespace linefeed::printer

@@ -1,0 +1,95 @@
+// Printers with which nothing is done: what is seen of them, and which machine stands behind a name.
+#include "service_fixture.hpp"
+
+namespace linefeed::service {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+using testing::Not;
+
+class WatchTest : public ServiceTest {
+protected:
+    [[nodiscard]] std::string settings(const SimulatedPrinter& printer) const {
+        return settings_text({printer.address()}, ", watch_interval: 1 s");
+    }
+    [[nodiscard]] bool comes_to_show(const std::function<bool(const daemon::PrinterView&)>& wanted) {
+        return wait_until([&] { return wanted(service_->printer("line1").value()); });
+    }
+    static simulator::SimulatorSettings machine(const std::string& serial_number) {
+        simulator::SimulatorSettings settings;
+        settings.printer.serial_number = serial_number;
+        return settings;
+    }
+};
+
+TEST_F(WatchTest, shouldShowAnIdlePrinterAsItIsAndTellWhatComesAndGoes) {
+    simulator::SimulatorSettings dirty = machine("104711");
+    dirty.faults = {simulator::parse_fault("time 0.3 cover open").value()};
+    std::optional<SimulatedPrinter> printer{std::in_place, directory_ / "tape.csv", 100, "0", dirty};
+    const std::string port = printer->port();
+    open(settings(*printer));
+    ASSERT_TRUE(comes_to_show([](const auto& view) { return view.watched && view.cover_open == true; }));
+    EXPECT_EQ(service_->printer("line1")->link, daemon::LinkState::up);
+    EXPECT_EQ(service_->printer("line1")->serial_number, "104711");
+    EXPECT_EQ(service_->printer("line1")->known_serial_number, "104711");
+    EXPECT_TRUE(service_->printer("line1")->total_prints.has_value());
+    EXPECT_TRUE(wait_until([&] { return testing::Matches(Contains("printer.warning"))(event_kinds()); }));
+
+    printer.reset();
+    ASSERT_TRUE(comes_to_show([](const auto& view) { return view.link == daemon::LinkState::down; }));
+    EXPECT_TRUE(wait_until([&] { return testing::Matches(Contains("printer.down"))(event_kinds()); }));
+    EXPECT_THAT(event_kinds(), Not(Contains("printer.up")));
+    printer.emplace(directory_ / "tape2.csv", 100, port, machine("104711"));
+    ASSERT_TRUE(comes_to_show([](const auto& view) { return view.link == daemon::LinkState::up; }));
+    EXPECT_TRUE(wait_until([&] { return testing::Matches(Contains("printer.up"))(event_kinds()); }));
+}
+
+TEST_F(WatchTest, shouldLeaveAPrinterAloneThatIsNotToBeWatched) {
+    SimulatedPrinter printer{directory_ / "tape.csv", 100};
+    open(settings_text({printer.address()}, ", watch_interval: 0 s"));
+    std::this_thread::sleep_for(std::chrono::milliseconds{200});
+    EXPECT_FALSE(service_->printer("line1")->watched);
+    EXPECT_EQ(service_->printer("line1")->heard_ns, 0);
+    text_ = settings(printer);
+    ASSERT_TRUE(service_->reload(anna)) << "it takes effect at once";
+    EXPECT_TRUE(comes_to_show([](const auto& view) { return view.watched; }));
+}
+
+TEST_F(WatchTest, shouldNotStartOnAnotherMachineBeforeAnOperatorHasAcceptedIt) {
+    std::optional<SimulatedPrinter> printer{std::in_place, directory_ / "tape.csv", 1000, "0", machine("104711")};
+    const std::string port = printer->port();
+    const std::string never_watched = settings_text({printer->address()}, ", watch_interval: 0 s");
+    open(never_watched);
+    const spool::JobId first = import(50);
+    ASSERT_TRUE(service_->start(anna, first));
+    ASSERT_TRUE(comes_to(first, JobPhase::finished));
+    const spool::JobId second = import(50, 1001);
+    service_.reset();
+    EXPECT_EQ(printer->products(), serials(1, 50));
+
+    printer.emplace(directory_ / "tape2.csv", 1000, port, machine("99"));
+    open(never_watched); // which machine it was is kept over the restart
+    ASSERT_TRUE(service_->start(anna, second));
+    ASSERT_TRUE(comes_to(second, JobPhase::stopped));
+    EXPECT_THAT(view(second).message, HasSubstr("the serial number here was 104711"));
+    EXPECT_THAT(view(second).message, HasSubstr("linefeed printer line1 accept 99"));
+    EXPECT_TRUE(service_->printer("line1")->other_machine());
+
+    const auto guessed = service_->accept_printer(anna, "line1", "98");
+    ASSERT_FALSE(guessed);
+    EXPECT_EQ(guessed.error().kind, FailureKind::stopped);
+    EXPECT_THAT(guessed.error().message, HasSubstr("the printer's serial number is 99, and not 98"));
+    ASSERT_TRUE(service_->accept_printer(anna, "line1", "99"));
+    EXPECT_FALSE(service_->printer("line1")->other_machine());
+    EXPECT_FALSE(service_->accept_printer(anna, "line9", "99"));
+    ASSERT_TRUE(service_->start(anna, second));
+    ASSERT_TRUE(comes_to(second, JobPhase::finished));
+    service_.reset();
+    EXPECT_EQ(printer->products(), serials(1001, 1050));
+    open(never_watched);
+    EXPECT_EQ(service_->printer("line1")->known_serial_number, "99");
+}
+
+} // namespace
+} // namespace linefeed::service
