@@ -190,7 +190,8 @@ void Feeder::watch_for_missing(Instant now, Actions& out) {
     const std::uint64_t held = printed_at_most().value() + mail_.entries + std::uint64_t{1};
     held_through_ = std::min<std::uint64_t>(held, refill_.sent_through().value() + (marker_sent_ ? 1 : 0));
     missing_ = held < surely_received_.value() ? missing_ + 1 : 0;
-    if (missing_ > 0) {
+    const std::uint64_t held_at_least = refill_.printed_through().value() + mail_.entries + std::uint64_t{1};
+    if (held_at_least < surely_received_.value()) {
         doubt_number();
     }
     if (total_before_) {

@@ -62,6 +62,7 @@ TEST_F(RunningImportTest, shouldGiveRecordsOfASlowSourceBeforeTheirPageIsFull) {
     EXPECT_EQ(import_->bound(), RecordNumber{1'000'000});
     rows_.give(1);
     rows_.wait_until_read(1);
+    EXPECT_FALSE(import_->wants_step()); // and so the reading thread knows that nothing waits to be written
     std::this_thread::sleep_for(std::chrono::milliseconds{30}); // longer than a page waits
     rows_.give(1);
     go_on_until([this] { return !import_->durable().empty(); });

@@ -369,6 +369,28 @@ TEST(FeederStopPoint, shouldStopWhenTheWholeFifoWasThrownAwayUnseen) {
     }
 }
 
+TEST(FeederStopPoint, shouldNotMissAGapBecauseANumberFromBeforeTheRunCouldBeOneOfIt) {
+    for (const std::uint32_t entries : {3U, 1U}) {
+        Story story;
+        story.identify();
+        story.locate(104); // and 101-104 are sent
+        story.granted();
+        story.sm(0, 104, 0);
+        story.sm(0, 104, Story::last);
+        story.supplied(Story::last);
+        story.sm(3, 104, 110);
+        story.wait(milliseconds{4});
+        story.rs(State::printing);
+        story.sm(entries, 104, 110);
+        story.sm(entries, 104, 110);
+        story.take();
+        story.sm(1, 102, 110);
+        const std::string seen = story.take();
+        EXPECT_EQ(seen.find("printed through 102") == std::string::npos, entries == 1) << seen;
+        EXPECT_EQ(seen.find("?CC") != std::string::npos, entries == 1) << seen;
+    }
+}
+
 TEST(FeederStopPoint, shouldStopAPrinterThatWasStoppedAndStartedAgainBehindOurBack) {
     Story story = reach(Phase::printing);
     story.sm(0, 103, 110);
