@@ -14,7 +14,7 @@ namespace linefeed::protocol {
 [[nodiscard]] std::string_view to_string(Risk risk);
 
 /// Every command with its direction, parameters, risk and description: a Markdown table for each section of the
-/// protocol. docs/commands.md is this text.
+/// protocol. deploy/doc/commands.md is this text.
 [[nodiscard]] std::string commands_as_markdown();
 
 } // namespace linefeed::protocol

@@ -250,9 +250,9 @@ TEST(EveryCommand, shouldBeAnsweredOrObeyedBySimulatedPrinters) {
 }
 
 TEST(EveryCommand, shouldBeInThePageOfTheDocumentation) {
-    std::ifstream file{LINEFEED_SOURCE_DIR "/docs/commands.md"};
+    std::ifstream file{LINEFEED_SOURCE_DIR "/deploy/doc/commands.md"};
     const std::string page{std::istreambuf_iterator<char>{file}, {}};
-    EXPECT_EQ(page, protocol::commands_as_markdown()) << "run: linefeed-sim --commands > docs/commands.md";
+    EXPECT_EQ(page, protocol::commands_as_markdown()) << "run: linefeed-sim --commands > deploy/doc/commands.md";
 }
 
 } // namespace
