@@ -145,6 +145,10 @@ ExitCode run_file_get(const FileOptions& options) {
                                    printer::path_text(*path) +
                                        ": there is no such file, or it is empty: the printer answers alike"};
                 }
+                if (options.local == "-") {
+                    show(*bytes);
+                    return ExitCode::done;
+                }
                 if (auto written = write_file(local, *bytes, options.replace); !written) {
                     return written.error();
                 }
@@ -199,16 +203,17 @@ ExitCode run_backup(const FolderOptions& options) {
             if (!report) {
                 return report.error();
             }
+            std::size_t saved = report->manifest.files.size();
             for (const printer::SavedFile& file : report->manifest.files) {
                 if (file.empty_or_unreadable()) {
+                    --saved;
                     say(printer::path_text(file.path) + ": empty, or it cannot be read: the printer answers alike");
                 }
             }
-            return shown(options.printer,
-                         {{"folder", options.folder.string()},
-                          {"files", report->manifest.files.size()},
-                          {"taken_before", report->taken_before}},
-                         options.folder.string() + ": " + std::to_string(report->manifest.files.size()) + " files");
+            return shown(
+                options.printer,
+                {{"folder", options.folder.string()}, {"files", saved}, {"taken_before", report->taken_before}},
+                options.folder.string() + ": " + std::to_string(saved) + " files");
         });
     });
 }
@@ -217,6 +222,9 @@ ExitCode run_restore(const FolderOptions& options) {
     cli::SignalWatch signals;
     ProgressLine line;
     return run_command(options.printer.common.json, [&]() -> Result<ExitCode> {
+        if (const auto whole = printer::check_backup(options.folder); !whole) {
+            return whole.error();
+        }
         const auto yes = confirm("Files of " + options.printer.printer + " that differ from " +
                                      options.folder.string() + " are replaced. Do it",
                                  options.yes, options.printer.common.json);
@@ -260,7 +268,7 @@ ExitCode run_script_get(const ScriptOptions& options) {
         }
         lines += "ENDLJSCRIPT\n";
         if (!options.file.empty()) {
-            if (auto written = write_file(options.file, lines, true); !written) {
+            if (auto written = write_file(options.file, lines, options.replace); !written) {
                 return written.error();
             }
         }

@@ -31,6 +31,7 @@ struct FolderOptions {
 struct ScriptOptions {
     PrinterOptions printer;
     std::filesystem::path file; ///< empty = stdout
+    bool replace = false;       ///< the file that is there
     bool yes = false;
 };
 [[nodiscard]] ExitCode run_script_get(const ScriptOptions& options);

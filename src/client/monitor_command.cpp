@@ -4,6 +4,7 @@
 #include "cli/wall_time.hpp"
 #include "client/direct_printer.hpp"
 #include "printer/conversation.hpp"
+#include "printer/job_commands.hpp"
 #include "printer/message_json.hpp"
 #include "protocol/profile.hpp"
 
@@ -214,6 +215,11 @@ Result<ExitCode> replay_against(const ReplayOptions& options, const std::vector<
     const auto connected = connect_directly(options.against, options.printer.direct);
     if (!connected) {
         return connected.error();
+    }
+    if (changes_printer(frames)) {
+        if (const auto stands = printer::check_not_printing(**connected); !stands) {
+            return stands.error();
+        }
     }
     Until until{std::nullopt};
     const auto pause = [&](Duration time) {

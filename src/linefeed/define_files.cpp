@@ -28,7 +28,7 @@ void add_transfers(CLI::App& printer, Commands& commands, const Printer& printer
     CLI::App& get = command_in(files, "get", "Copy a file of the printer");
     get.add_option("PATH", got->path, "Path in the printer, e.g. FFSDISK\\Jobs\\Name.job; / is taken for \\")
         ->required();
-    get.add_option("FILE", got->local, "Where to; default: under the same name");
+    get.add_option("FILE", got->local, "Where to; - is stdout; default: under the same name");
     get.add_flag("--replace", got->replace, "Replace FILE");
     get.footer("The file is there whole, or not at all. The printer does not tell a missing file from an empty one.");
     commands.push_back({&get, [=] {
@@ -73,6 +73,7 @@ void add_scripts(CLI::App& printer, Commands& commands, const Printer& printer_o
     const auto got = std::make_shared<client::ScriptOptions>();
     CLI::App& get = command_in(script, "get", "The current job as a script");
     get.add_option("FILE", got->file, "Where to; default: stdout");
+    get.add_flag("--replace", got->replace, "Replace FILE");
     commands.push_back({&get, [=] {
                             got->printer = *printer_options;
                             return client::run_script_get(*got);

@@ -194,6 +194,10 @@ Result<Json> set_text(PrinterClient& printer, const Order& order) {
         return Failure{FailureKind::usage, "the text must have at most " + std::to_string(protocol::max_extern_text) +
                                                " bytes, and no line end"};
     }
+    if (printer.settings().escapes == protocol::EscapeMode::none &&
+        wanted.text.find_first_of("^\\") != std::string::npos) {
+        return Failure{FailureKind::usage, "the text has ^ or \\, which firmware without escapes cannot be told"};
+    }
     if (!printer.send(wanted)) {
         return no_answer(printer, Parameter::ET);
     }

@@ -40,6 +40,23 @@ std::optional<Group> group_of(char character) {
     return found == groups.end() ? std::nullopt : std::optional{*found};
 }
 
+/// A `^` without escape begins a frame (protocol, section 1): another command would go along unseen.
+bool has_second_frame(std::string_view payload, protocol::EscapeMode escapes) {
+    for (std::size_t i = 0; i < payload.size(); ++i) {
+        if (payload[i] == '^') {
+            return true;
+        }
+        if (payload[i] == '\\' && escapes == protocol::EscapeMode::backslash) {
+            ++i;
+        }
+    }
+    return false;
+}
+
+Failure second_frame() {
+    return wrong("a ^ within a frame begins another one: send one frame at a time, and \\\\^ where ^ is data");
+}
+
 /// "=CM100", "^0?RS", "!GO".
 Result<RawFrame> read_frame(std::string_view text) {
     const auto bytes = unescaped_bytes(text);
@@ -57,6 +74,9 @@ Result<RawFrame> read_frame(std::string_view text) {
     }
     if (rest.find_first_of("\r\n") != std::string_view::npos) {
         return wrong("there is no line end within a frame: send one frame at a time");
+    }
+    if (has_second_frame(rest, protocol::EscapeMode::backslash)) {
+        return second_frame();
     }
     if (rest.size() + 2 > protocol::max_frame_bytes) {
         return wrong("a frame has at most " + std::to_string(protocol::max_frame_bytes) + " bytes");
@@ -84,6 +104,9 @@ Result<Json> send(PrinterClient& printer, const Order& order) {
     const auto frame = read_frame(order.arguments.text("frame"));
     if (!frame) {
         return frame.error();
+    }
+    if (has_second_frame(frame->payload, printer.settings().escapes)) {
+        return second_frame();
     }
     std::string bytes;
     protocol::append_frame(bytes, frame->group, frame->payload);
@@ -156,6 +179,9 @@ Result<Json> query(PrinterClient& printer, const Order& order) {
     const auto argument = unescaped_bytes(order.arguments.text("argument"));
     if (!right || !argument || argument->find_first_of("\r\n") != std::string::npos) {
         return wrong("an inquiry has two letters, e.g. SM, and at most one line behind them");
+    }
+    if (has_second_frame(*argument, printer.settings().escapes)) {
+        return second_frame();
     }
     std::string bytes;
     protocol::append_frame(bytes, Group::inquiry, code + *argument);

@@ -58,7 +58,7 @@ bool is_feeding(const Command& command) {
     };
     return action(Action::start_print) || action(Action::stop_print) || action(Action::nozzle_close) ||
            action(Action::motor_close) || action(Action::reload_fonts) || transfer(Parameter::MR) ||
-           transfer(Parameter::CM) || transfer(Parameter::JL);
+           transfer(Parameter::CM) || transfer(Parameter::CC) || transfer(Parameter::JL);
 }
 
 /// nullptr = linefeed does not know it.

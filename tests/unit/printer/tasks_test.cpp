@@ -168,6 +168,17 @@ TEST(Tasks, shouldShowAnInquiryThatNobodyKnows) {
     }
 }
 
+TEST(Tasks, shouldSendNoSecondFrameBehindTheFirst) {
+    AnsweringPrinter printer{{{"^0?RS", "^0=RS2\t5\t0\t0\t9\t0\r"}}};
+    for (const char* argument : {"^0!FF", "1^0!PF", "\\\\\\\\^0!FF"}) {
+        const auto asked = printer.run("query", {{"code", "RS"}, {"argument", argument}});
+        EXPECT_EQ(asked.error().kind, FailureKind::usage) << argument;
+        const auto sent = printer.run("send", {{"frame", std::string{"?RS"} + argument}});
+        EXPECT_EQ(sent.error().kind, FailureKind::usage) << argument;
+    }
+    EXPECT_THAT(printer.heard(), Not(HasSubstr("!")));
+}
+
 TEST(Tasks, shouldRefuseWhatLosesSomethingWhileTheMachinePrints) {
     AnsweringPrinter printer{{{"^0?RS", "^0=RS2\t6\t0\t0\t9\t0\r"}}};
     for (const char* name : {"flush", "power off", "restart", "factory-reset"}) {
