@@ -119,7 +119,7 @@ TEST(ChoiceText, shouldNameTheWordsAndTheNearest) {
     EXPECT_EQ(charset("utf-8"), "expected latin1, windows-1252 or unicode-hex, found \"utf-8\"");
     EXPECT_EQ(charset("[latin1]"), "expected latin1, windows-1252 or unicode-hex, found a list");
     EXPECT_EQ(refusal_of("printers", "profile", "jet3-up"),
-              "expected jet3up, jet3, jet2neo or jet2neo-v71, found \"jet3-up\"; did you mean \"jet3up\"?");
+              "expected jet3up, jet3, jet2neo, jet2neo-v71 or auto, found \"jet3-up\"; did you mean \"jet3up\"?");
     EXPECT_EQ(refusal_of("layouts", "orientation", "45"), "expected 0, 90, 180 or 270, found \"45\"");
     EXPECT_EQ(refusal_of("layouts", "orientation", "270"), "");
 }

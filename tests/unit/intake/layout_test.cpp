@@ -33,7 +33,7 @@ TEST_F(LayoutTest, shouldHaveOneCanonicalForm) {
     layout.header = false;
     layout.skip_bad = true;
     layout.encodings = {"latin1"};
-    layout.profile = protocol::profiles.back();
+    layout.profile = protocol::profile_by_name("jet2neo-v71").value();
     layout.base = 7;
     layout.properties = {true, protocol::Orientation::degrees_90};
     EXPECT_EQ(

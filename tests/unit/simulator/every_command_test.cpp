@@ -266,14 +266,18 @@ TEST(EveryCommand, shouldBeAnsweredOrObeyedBySimulatedPrinters) {
 
 // The page of the documentation: each cell is found out here, none is written by hand.
 
-/// The name of the type that the message has.
+/// The name of the type that the message has; of a template with its arguments.
 std::string type_of(const protocol::Message& message) {
     return std::visit(
         []<typename T>(const T&) {
             const std::string_view function = __PRETTY_FUNCTION__; // … [with T = linefeed::protocol::MailStatus; …]
-            const std::size_t begin = function.find("T = ");
-            const std::string_view name = function.substr(begin, function.find_first_of(";]", begin) - begin);
-            return std::string{name.substr(name.rfind(':') + 1)};
+            const std::size_t begin = function.find("T = ") + 4;
+            std::string name{function.substr(begin, function.find_first_of(";]", begin) - begin)};
+            constexpr std::string_view space = "linefeed::protocol::";
+            for (std::size_t at = name.find(space); at != std::string::npos; at = name.find(space)) {
+                name.erase(at, space.size());
+            }
+            return name;
         },
         message);
 }
