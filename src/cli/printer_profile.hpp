@@ -7,8 +7,7 @@
 
 namespace linefeed::cli {
 
-/// Asks the printer of `options` (`?VS`). FailureKind::unreachable: it cannot be reached, or does not tell: nothing is
-/// guessed, since records would come out wrong.
+/// Asks the printer of `options`, see printer::ask_profile(). FailureKind::usage: its address is none.
 [[nodiscard]] Result<protocol::Profile> ask_profile(const PrintOptions& options);
 
 } // namespace linefeed::cli

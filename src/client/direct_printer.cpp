@@ -2,7 +2,7 @@
 
 #include "config/load.hpp"
 #include "link/printer_address.hpp"
-#include "protocol/profile.hpp"
+#include "printer/told_profile.hpp"
 
 #include <fstream>
 #include <iterator>
@@ -33,8 +33,16 @@ Result<printer::ClientSettings> direct_settings(const std::string& address, cons
     if (!endpoints) {
         return endpoints.error();
     }
-    return printer::ClientSettings{
+    printer::ClientSettings settings{
         .address = link::to_string(*parsed), .endpoints = std::move(*endpoints), .escapes = profile->escapes};
+    if (protocol::is_automatic(*profile)) {
+        const auto told = printer::ask_profile(settings);
+        if (!told) {
+            return told.error();
+        }
+        settings.escapes = told->escapes;
+    }
+    return settings;
 }
 
 Result<std::unique_ptr<printer::PrinterClient>> connect_directly(const std::string& address,

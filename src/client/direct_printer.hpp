@@ -21,7 +21,8 @@ struct DirectOptions {
 /// What stands for PRINTER is an address, and no name.
 [[nodiscard]] bool is_address(std::string_view printer);
 
-/// How to talk to the printer at this address. FailureKind::usage: it is none; ::unreachable: there is no such host.
+/// How to talk to the printer at this address, which is asked what it is if the profile is automatic.
+/// FailureKind::usage: it is none; ::unreachable: there is no such host, or it does not say what it is.
 [[nodiscard]] Result<printer::ClientSettings> direct_settings(const std::string& address, const DirectOptions& options);
 [[nodiscard]] Result<std::unique_ptr<printer::PrinterClient>> connect_directly(const std::string& address,
                                                                                const DirectOptions& options);

@@ -1,0 +1,25 @@
+#include "printer/told_profile.hpp"
+
+#include "protocol/printable.hpp"
+
+namespace linefeed::printer {
+
+Result<protocol::Profile> ask_profile(const ClientSettings& settings) {
+    const auto printer = PrinterClient::connect(settings);
+    if (!printer) {
+        return printer.error();
+    }
+    const auto version = (*printer)->ask<protocol::VersionInfo>(protocol::Parameter::VS);
+    const auto profile = version ? protocol::profile_for(version->type, version->firmware) : std::nullopt;
+    if (profile) {
+        return *profile;
+    }
+    const std::string told = version ? "says that it is a \"" + protocol::printable(version->type) +
+                                           "\" with firmware \"" + protocol::printable(version->firmware) +
+                                           "\", for which no profile is known"
+                                     : "does not say what it is (?VS)";
+    return Failure{FailureKind::unreachable,
+                   settings.address + ": the printer " + told + ": name its profile with --profile"};
+}
+
+} // namespace linefeed::printer
