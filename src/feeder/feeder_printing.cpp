@@ -144,6 +144,9 @@ bool Feeder::take_report(Instant now, Actions& out) {
     if (pacing_.leaps(refill_.printed_through() - refill_.range().first().previous(), now)) {
         doubt_number(); // another client may have flushed the FIFO: no stop point shows that
     }
+    if (total_before_ && may_have_skipped()) {
+        doubt_number();
+    }
     const RecordNumber said = finished ? printed : printed.previous();
     // Without a counter to bear it out, one damaged answer must not prove anything.
     reported_through_ = std::max(reported_through_, total_before_ ? said : std::min(said, said_before_));
