@@ -113,6 +113,8 @@ class Files(harness.TestCase):
         back = self.directory / "back.ljs"
         self.done("script", "get", back)
         self.assertEqual(script.read_text(encoding="utf-8"), back.read_text(encoding="utf-8"))
+        self.assert_one_clear_line(2, self.linefeed("script", "get", back), "already")
+        self.done("script", "get", back, "--replace")
         self.done("text", "--set", "W" * 100)
         rows = self.done("preview", "-o", "json").json()["rows"]
         self.assertEqual((7, 600), (len(rows), len(rows[0])))
@@ -127,10 +129,14 @@ class Files(harness.TestCase):
         self.done("files", "rm", "FFSDISK/Jobs/DM.JOB", "--yes")
         script = self.directory / "job.ljs"
         script.write_text("OBJ [1]\n", encoding="utf-8")
+        self.done("files", "get", "FFSDISK/Jobs/LINIE.job", self.directory / "line.job")
+        self.assertEqual((self.directory / "line.job").read_text(encoding="utf-8"), self.done("files", "get", "FFSDISK/Jobs/LINIE.job", "-").out)
+        risky = self.directory / "risky.jsonl"
+        risky.write_text('{"time_ns":1,"direction":"sent","bytes":"^0!FF\\\\x0D"}\n', encoding="utf-8")
         job = self.start(self.write_csv(harness.rows(records)), self.printer)
         self.printer.wait_for_prints(100)
         for words in (("script", "send", script, "--yes"), ("load", "LINIE.job"), ("files", "rm", "FFSDISK/Jobs/LINIE.job", "--yes"),
-                      ("files", "put", script, "FFSDISK/Jobs/LINIE.job", "--replace")):
+                      ("files", "put", script, "FFSDISK/Jobs/LINIE.job", "--replace"), ("replay", risky, "--against", self.printer.address, "--yes")):
             self.assert_one_clear_line(4, self.linefeed(*words))
         self.done("files", "ls", "FFSDISK/Jobs")
         self.done("preview")

@@ -26,12 +26,12 @@ protected:
     void drop(const std::string& name, std::uint32_t count, std::uint32_t first) const {
         std::filesystem::rename(file(name, count, first), folder() / name);
     }
-    /// The job of that name, once it is there.
+    /// The job of that name, once all of its records are there.
     spool::JobId job_named(const std::string& name) {
         spool::JobId found{};
         EXPECT_TRUE(wait_until([&] {
             for (const daemon::JobView& job : service_->jobs({.limit = 1000}).value()) {
-                found = job.name == name ? job.id : found;
+                found = job.name == name && job.phase != JobPhase::importing ? job.id : found;
             }
             return found != spool::JobId{};
         })) << name;
