@@ -269,7 +269,7 @@ void Feeder::start_answered(Instant now, Actions& out) {
         if (stop_point_ == StopPoint::unset) {
             set_stop_point_again(out);
         }
-        status_due_ = now + settings_.status_interval;
+        plan_status(now);
         if (mail_outstanding_ == 0) {
             ask(Parameter::SM, now, out);
         }
