@@ -172,6 +172,7 @@ private:
     void locate_again(Instant now, Actions& out);
     void check_ready(Instant now, Actions& out);
     void check_errors(Instant now, Actions& out);
+    [[nodiscard]] bool printed_for_another() const;
     void flushed(Instant now, Actions& out);
     void set_stop_point(Instant now, Actions& out);
     void stop_point_answered(Instant now, Actions& out);
