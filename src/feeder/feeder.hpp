@@ -35,7 +35,10 @@ struct FeederSettings {
     BoundedList<std::uint32_t, 16> acknowledge;
     StoppingErrors stop_on;                                    ///< besides those that the printer shows as errors
     Duration status_interval = std::chrono::milliseconds{500}; ///< `?RS` while printing
-    Duration retry_interval = std::chrono::milliseconds{20};   ///< between inquiries while waiting for a state
+    /// The same where no stop point would show a stop: if it comes in mid-print, and the line is started again before
+    /// the next look, nothing tells that the product carries only a part.
+    Duration unguarded_status_interval = std::chrono::milliseconds{100};
+    Duration retry_interval = std::chrono::milliseconds{20}; ///< between inquiries while waiting for a state
     /// From the first fill to `!GO`: the first product may come at once, and its record must lie in the FIFO 3 ms
     /// before (protocol, section 5).
     Duration fill_lead = std::chrono::milliseconds{4};
@@ -169,6 +172,7 @@ private:
     void locate_again(Instant now, Actions& out);
     void check_ready(Instant now, Actions& out);
     void check_errors(Instant now, Actions& out);
+    [[nodiscard]] bool printed_for_another() const;
     void flushed(Instant now, Actions& out);
     void set_stop_point(Instant now, Actions& out);
     void stop_point_answered(Instant now, Actions& out);
@@ -192,6 +196,7 @@ private:
     void halt(Instant now, Actions& out);
 
     // feeder_printing.cpp: reports, refills and the stop point
+    void plan_status(Instant now);
     void print_status(Instant now, Actions& out);
     void print_error(Instant now, Actions& out);
     void print_mail(Instant now, Actions& out);
@@ -206,7 +211,8 @@ private:
     void note_unfinished();
     void note_restart();
     [[nodiscard]] RecordNumber printed_at_most() const;
-    [[nodiscard]] bool may_have_skipped();
+    [[nodiscard]] bool may_have_skipped() const;
+    void note_chain();
     void watch_for_missing(Instant now, Actions& out);
     void doubt_number();
     [[nodiscard]] bool take_report(Instant now, Actions& out);

@@ -159,9 +159,14 @@ void Feeder::on_refused(OutcomeCode why, Actions& out) {
     }
 }
 
+/// By the number that stood there when the ledger took the truth down. Some firmware forgets it with the flush.
+bool Feeder::printed_for_another() const {
+    return mail_.last_printed != left_over_ && mail_.last_printed != RecordNumber{};
+}
+
 void Feeder::flushed(Instant now, Actions& out) {
-    if (mail_.last_printed != left_over_ && mail_.last_printed != RecordNumber{}) {
-        begin_stop(OutcomeCode::busy, now, out); // it has printed since the ledger took the truth down
+    if (printed_for_another()) {
+        begin_stop(OutcomeCode::busy, now, out);
         return;
     }
     if (mail_.entries != 0) {
@@ -179,8 +184,12 @@ void Feeder::set_stop_point(Instant now, Actions& out) {
 }
 
 void Feeder::stop_point_answered(Instant now, Actions& out) {
-    if (mail_.stop_at != refill_.range().last() && mail_reads_ < 2) {
+    if ((mail_.stop_at != refill_.range().last() || printed_for_another()) && mail_reads_ < 2) {
         ask(Parameter::SM, now, out);
+        return;
+    }
+    if (printed_for_another()) {
+        begin_stop(OutcomeCode::busy, now, out);
         return;
     }
     // Some firmware keeps the stop point only once it is printing: insist_on_stop_point() tries again there.
@@ -208,8 +217,12 @@ void Feeder::verify(Instant now, Actions& out) {
     const std::uint64_t sent = refill_.level().value();
     const bool as_expected = mail_.entries + std::uint64_t{1} == sent;
     const bool stop_point_stands = stop_point_ != StopPoint::kept_idle || mail_.stop_at == refill_.range().last();
-    if (!(as_expected && stop_point_stands) && mail_reads_ < 2) {
+    if (!(as_expected && stop_point_stands && !printed_for_another()) && mail_reads_ < 2) {
         ask(Parameter::SM, now, out);
+        return;
+    }
+    if (printed_for_another()) {
+        begin_stop(OutcomeCode::busy, now, out); // and the counter has counted that
         return;
     }
     if (!stop_point_stands) {
@@ -269,7 +282,7 @@ void Feeder::start_answered(Instant now, Actions& out) {
         if (stop_point_ == StopPoint::unset) {
             set_stop_point_again(out);
         }
-        status_due_ = now + settings_.status_interval;
+        plan_status(now);
         if (mail_outstanding_ == 0) {
             ask(Parameter::SM, now, out);
         }

@@ -20,8 +20,13 @@ constexpr Duration stop_patience = std::chrono::milliseconds{500};
 
 } // namespace
 
+void Feeder::plan_status(Instant now) {
+    status_due_ = now + (stop_would_show() ? settings_.status_interval
+                                           : std::min(settings_.status_interval, settings_.unguarded_status_interval));
+}
+
 void Feeder::print_status(Instant now, Actions& out) {
-    status_due_ = now + settings_.status_interval;
+    plan_status(now);
     if (status_.machine != MachineState::printing) {
         begin_judging(now, out);
         return;
@@ -144,11 +149,21 @@ bool Feeder::take_report(Instant now, Actions& out) {
     if (pacing_.leaps(refill_.printed_through() - refill_.range().first().previous(), now)) {
         doubt_number(); // another client may have flushed the FIFO: no stop point shows that
     }
+    const bool skipped = may_have_skipped();
+    note_chain();
+    if (skipped) {
+        doubt_number();
+    }
     const RecordNumber said = finished ? printed : printed.previous();
     // Without a counter to bear it out, one damaged answer must not prove anything.
     reported_through_ = std::max(reported_through_, total_before_ ? said : std::min(said, said_before_));
     said_before_ = said;
     confirm_reported(out);
+    if (skipped && !total_before_) {
+        restarted_ = true; // and so no number counts
+        begin_stop(OutcomeCode::stopped_at_printer, now, out);
+        return false;
+    }
     return true;
 }
 
@@ -173,14 +188,14 @@ RecordNumber Feeder::printed_at_most() const {
 
 /// Behind an empty FIFO any number may follow (protocol, section 5): when the printer has printed all that it was seen
 /// to hold, and more, a record between may have been lost on its way, and skipped.
-bool Feeder::may_have_skipped() {
-    const std::uint64_t printed = refill_.printed_through().value();
-    const bool may = printed > chained_through_ + 1;
+bool Feeder::may_have_skipped() const {
+    return refill_.printed_through().value() > chained_through_ + 1;
+}
+
+void Feeder::note_chain() {
     const std::uint64_t loaded = mail_.entries == 0 ? 0 : 1 - excess_of_fill_; // with 0 entries there may be none
-    const std::uint64_t held =
-        std::min<std::uint64_t>(printed + mail_.entries + loaded, refill_.sent_through().value());
-    chained_through_ = std::max(chained_through_, held);
-    return may;
+    const std::uint64_t held = refill_.printed_through().value() + mail_.entries + loaded;
+    chained_through_ = std::max(chained_through_, std::min<std::uint64_t>(held, refill_.sent_through().value()));
 }
 
 /// Fewer records are in the printer than it surely received: a serial line has lost some, or another client has flushed
@@ -194,13 +209,7 @@ void Feeder::watch_for_missing(Instant now, Actions& out) {
     if (held_at_least < surely_received_.value()) {
         doubt_number();
     }
-    if (total_before_) {
-        return;
-    }
-    if (may_have_skipped()) {
-        restarted_ = true; // and so no number counts
-        begin_stop(OutcomeCode::stopped_at_printer, now, out);
-    } else if (missing_ > 1) { // once: it may be a damaged answer
+    if (!total_before_ && missing_ > 1) { // once: it may be a damaged answer
         begin_stop(OutcomeCode::stopped_at_printer, now, out);
     }
 }
@@ -281,6 +290,7 @@ bool Feeder::stop_point_vanished(Instant now, Actions& out) {
 void Feeder::stop_suspected(Instant now, Actions& out) {
     if (stop_point_ == StopPoint::kept_idle && total_before_) { // otherwise nothing else would show that it was a stop
         stop_point_ = StopPoint::unset; // this firmware keeps it only when it is set after the start
+        plan_status(now);
         stop_move_ = StopMove::none;
         old_stop_point_.reset();
         suspected_since_.reset();

@@ -110,7 +110,7 @@ void Feeder::taken_over(RecordRange range, RecordNumber durable_through, Instant
     if (stop_point_ == StopPoint::unset) {
         set_stop_point_again(out);
     }
-    status_due_ = now + settings_.status_interval;
+    plan_status(now);
     ask(Parameter::SM, now, out);
 }
 

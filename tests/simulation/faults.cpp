@@ -127,6 +127,7 @@ bool Faults::cause_at_printer(Fault fault) {
     case Fault::stop_and_go:
         if (printing) {
             press(Action::stop_print);
+            stopped_at_ = context_.now;
             repair_later(fault, 1ms, 2s);
             gap_ = true;
         }
@@ -186,6 +187,7 @@ void Faults::stop_under_refill() {
         count(Fault::stop_under_refill);
         gap_ = true;
         line_.act([](PrinterModel& model, Instant now) { model.press(Action::stop_print, now); });
+        stopped_at_ = context_.now;
         repair_later(Fault::stop_under_refill, 1ms, 600ms);
     });
 }
@@ -220,12 +222,28 @@ std::uint64_t Faults::some_records() {
     return random_.chance(0.5) ? 0 : random_.below(context_.scenario.printer.depth);
 }
 
+/// Stop and GO behind each other take a hand a while. In mid-print, behind an empty FIFO and on a firmware without stop
+/// point, only `=RS` shows that the machine stood.
+bool Faults::too_fast_for_a_hand(Fault fault) {
+    constexpr Duration least = 400ms;
+    const Duration standing = context_.now - stopped_at_;
+    if (line_.look().mail_status().last_print_finished || standing >= least) {
+        return false;
+    }
+    ++under_repair_;
+    context_.after(least - standing, EventKind::fault_ends, static_cast<std::uint64_t>(fault), 0);
+    return true;
+}
+
 void Faults::repair(Fault fault, std::uint64_t) {
     --under_repair_;
     context_.trace.note(context_.now, "repair", static_cast<std::uint64_t>(fault));
     switch (fault) {
     case Fault::stop_and_go:
     case Fault::stop_under_refill:
+        if (too_fast_for_a_hand(fault)) {
+            return;
+        }
         line_.act([](PrinterModel& model, Instant now) { model.press(Action::start_print, now); });
         excuse_for(1h); // what was in the FIFO is gone, and a slow line notices it late
         return;

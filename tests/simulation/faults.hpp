@@ -51,6 +51,7 @@ private:
     [[nodiscard]] std::uint64_t foreign_number();
     void repair_later(Fault fault, Duration low, Duration high, std::uint64_t detail = 0);
     void excuse_for(Duration duration);
+    [[nodiscard]] bool too_fast_for_a_hand(Fault fault);
 
     Context& context_;
     Judge& judge_;
@@ -62,6 +63,7 @@ private:
     std::uint32_t left_;
     std::uint32_t under_repair_ = 0;
     Instant excused_until_{};
+    Instant stopped_at_{}; ///< by hand, to be started again
     Instant answers_late_until_{};
     bool job_waits_ = false; ///< another host has one to print
     bool gap_ = false;       ///< the printer may have gone on behind a gap that linefeed has not yet settled

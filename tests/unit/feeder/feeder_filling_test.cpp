@@ -1,6 +1,8 @@
 // From the grant to the first print: flush, stop point with read-back, first fill, start.
 #include "story.hpp"
 
+#include <gmock/gmock.h>
+
 namespace linefeed::feeder {
 namespace {
 
@@ -52,6 +54,29 @@ TEST(FeederFilling, shouldNotGoOnWhenThePrinterHasPrintedSinceTheTruthWasTakenDo
     story = reach(Phase::flushing);
     story.sm(0, 0, 0); // a firmware that forgets the number with the FIFO
     story.expect("=CM 110; ?SM");
+}
+
+TEST(FeederFilling, shouldNotStartWhenThePrinterHasPrintedForSomebodyElseMeanwhile) {
+    Story story = reach(Phase::verifying);
+    story.sm(3, 78, 110); // once: it may be a damaged answer
+    story.expect("?SM");
+    story.sm(3, 77, 110);
+    EXPECT_EQ(story.phase(), Phase::starting);
+
+    story = reach(Phase::verifying);
+    story.sm(3, 78, 110);
+    story.sm(3, 78, 110);
+    story.expect("?SM; !ST; ?RS");
+    story.judge(3, 78, true, 1001);
+    EXPECT_THAT(story.take(), testing::HasSubstr("in doubt 101-104")) << "the number tells nothing of ours";
+
+    story = reach(Phase::setting_stop); // before anything is sent
+    story.sm(0, 78, 110);
+    story.expect("?SM");
+    story.sm(0, 78, 110);
+    story.expect("!ST; ?RS");
+    story.judge(0, 78, true, 1001);
+    EXPECT_THAT(story.take(), testing::HasSubstr("unused none by nothing was issued; end: busy"));
 }
 
 TEST(FeederFilling, shouldBelieveOnlyTheSecondAnswerAboutTheStopPoint) {

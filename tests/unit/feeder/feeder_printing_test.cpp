@@ -14,8 +14,10 @@ TEST(FeederPrinting, shouldFollowTheManualToTheEnd) {
     story.expect("printed through 101; =MR 105-105");
     story.sm(1, 103, 110);
     story.expect("printed through 103; =MR 106-107");
-    story.sm(0, 107, 110);
-    story.expect("printed through 107; =MR 108-110");
+    story.sm(1, 105, 110);
+    story.expect("printed through 105; =MR 108-109");
+    story.sm(0, 108, 110);
+    story.expect("printed through 108; =MR 110-110");
     story.sm(0, 109, 110);
     story.expect("printed through 109");
     story.sm(0, 110, 0); // the stop has cleared the stop point
@@ -159,6 +161,28 @@ TEST(FeederPrinting, shouldConfirmARecordOnlyWhenItsPrintHasFinished) {
     story.expect("");
 }
 
+TEST(FeederPrinting, shouldCountBeforeItBelievesANumberBehindAnAllButEmptyFifo) {
+    Story story = reach(Phase::printing);
+    story.sm(0, 104, 110);
+    story.expect("printed through 104; =MR 105-108");
+    story.sm(1, 106, 110); // 105 may be lost on its way
+    story.expect("=MR 109-110; ?CC; ?SM; ?SM");
+    story.cc(1005); // 106 is only the fifth
+    story.sm(1, 106, 110);
+    story.sm(1, 106, 110);
+    story.expect("");
+
+    story = reach(Phase::printing);
+    story.sm(0, 104, 110);
+    story.sm(1, 106, 110);
+    story.take();
+    story.cc(1006);
+    story.sm(1, 106, 110);
+    story.expect("");
+    story.sm(1, 106, 110);
+    story.expect("printed through 106");
+}
+
 TEST(FeederPrinting, shouldSendNothingBeforeItsIntentIsDurable) {
     Story story;
     story.arm_to_grant();
@@ -175,12 +199,14 @@ TEST(FeederPrinting, shouldSendNothingBeforeItsIntentIsDurable) {
     story.expect("printed through 103");
     story.durable(120);
     story.expect("=MR 105-107");
-    story.sm(0, 107, 200);
-    story.expect("printed through 107; =MR 108-111");
-    story.sm(0, 111, 200);
-    story.expect("printed through 111; =MR 112-115");
-    story.sm(0, 115, 200);
-    story.expect("printed through 115; intent through 131; =MR 116-119");
+    story.sm(1, 105, 200);
+    story.expect("printed through 105; =MR 108-109");
+    story.sm(1, 107, 200);
+    story.expect("printed through 107; =MR 110-111");
+    story.sm(1, 109, 200);
+    story.expect("printed through 109; =MR 112-113");
+    story.sm(1, 111, 200);
+    story.expect("printed through 111; intent through 129; =MR 114-115");
 }
 
 TEST(FeederPrinting, shouldRefillWhenPagesArrive) {

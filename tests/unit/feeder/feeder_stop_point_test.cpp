@@ -12,8 +12,7 @@ using std::chrono::seconds;
 
 TEST(FeederStopPoint, shouldStopBehindTheLastRecordWhenThePrinterKeepsItsStopPointButPrintsOn) {
     Story story = reach(Phase::printing);
-    story.sm(0, 104, 110);
-    story.sm(0, 108, 110);
+    story.print_through(108);
     story.take();
     story.sm(0, 110, 110);
     story.expect("printed through 110; ?RS");
@@ -42,6 +41,36 @@ Story printing_without_stop_point() {
     return story;
 }
 
+/// The time until `?RS` is asked while nothing but polls happens.
+Duration until_status(Story& story, std::uint32_t stop_at) {
+    const Instant begun = story.now;
+    for (int wakes = 0; wakes < 1000; ++wakes) {
+        EXPECT_TRUE(story.wake());
+        const std::string asked = story.take();
+        if (asked.find("?RS") != std::string::npos) {
+            return story.now - begun;
+        }
+        if (asked.find("?SM") != std::string::npos) {
+            story.sm(3, 77, stop_at);
+        }
+    }
+    return Duration::max();
+}
+
+TEST(FeederStopPoint, shouldLookMoreOftenForAStopThatNoStopPointWouldShow) {
+    Story guarded = reach(Phase::printing);
+    EXPECT_GT(until_status(guarded, 110), milliseconds{450});
+    guarded.rs(State::printing);
+    guarded.take();
+    EXPECT_GE(until_status(guarded, 110), milliseconds{500});
+
+    Story unguarded = printing_without_stop_point();
+    EXPECT_LE(until_status(unguarded, 0), milliseconds{110});
+    unguarded.rs(State::printing);
+    unguarded.take();
+    EXPECT_LE(until_status(unguarded, 0), milliseconds{110});
+}
+
 TEST(FeederStopPoint, shouldSetTheStopPointAgainForAPrinterThatKeepsItOnlyWhilePrinting) {
     Story story = printing_without_stop_point();
     story.sm(3, 77, 0); // one inquiry old
@@ -50,8 +79,7 @@ TEST(FeederStopPoint, shouldSetTheStopPointAgainForAPrinterThatKeepsItOnlyWhileP
     story.expect("");
     story.sm(2, 101, 110);
     story.expect("printed through 101; =MR 105-105");
-    story.sm(0, 104, 110);
-    story.sm(0, 108, 110);
+    story.print_through(108);
     story.sm(0, 110, 0);
     story.take();
     story.rs(State::ready_to_print, end_message);
@@ -416,8 +444,7 @@ TEST(FeederStopPoint, shouldStopAPrinterThatWasStoppedAndStartedAgainBehindOurBa
 
 TEST(FeederStopPoint, shouldFinishWhenAPrinterClearsTheStopPointBehindTheLastRecordAndSaysThatItPrints) {
     Story story = reach(Phase::printing);
-    story.sm(0, 104, 110);
-    story.sm(0, 108, 110);
+    story.print_through(108);
     story.take();
     story.sm(0, 110, 0);
     story.expect("?RS");

@@ -318,8 +318,7 @@ TEST(FeederStopping, shouldTakeTheLedgersWordOnlyWhereItIsAwaited) {
 
 TEST(FeederStopping, shouldFinishWhenAStopComesTooLate) {
     Story story = reach(Phase::printing);
-    story.sm(0, 104, 110);
-    story.sm(0, 108, 110);
+    story.print_through(108);
     story.stop();
     story.judge(0, 110, true, 1010, end_message);
     story.expect("settle this run: printed 109-110, in doubt none, unused none by end message 1223; !EQ; ?RS");
@@ -329,8 +328,7 @@ TEST(FeederStopping, shouldFinishWhenAStopComesTooLate) {
 
 TEST(FeederStopping, shouldNotBelieveAnEndMessageThatTheNumberContradicts) {
     Story story = reach(Phase::printing);
-    story.sm(0, 104, 110);
-    story.sm(0, 107, 110);
+    story.print_through(107);
     // Another client has set the stop point to 108.
     story.rs(State::ready_to_print, end_message);
     story.judge(0, 108, true, 1008, end_message);
@@ -340,8 +338,7 @@ TEST(FeederStopping, shouldNotBelieveAnEndMessageThatTheNumberContradicts) {
     EXPECT_NE(told.find("end: printer_error"), std::string::npos) << told;
 
     story = reach(Phase::printing); // a firmware that forgets its number with the stop
-    story.sm(0, 104, 110);
-    story.sm(0, 108, 110);
+    story.print_through(108);
     story.rs(State::ready_to_print, end_message);
     story.judge(0, 0, true, 1010, end_message);
     EXPECT_NE(story.take().find("printed 109-110, in doubt none, unused none by end message 1223"), std::string::npos);
@@ -360,8 +357,7 @@ TEST(FeederStopping, shouldWaitUntilTheEndMessageIsGone) {
 TEST(FeederStopping, shouldKnowTheEndMessageWithBit24) {
     const std::int32_t odd = raw_error(1223U | 1U << 24U, 2);
     Story story = reach(Phase::printing);
-    story.sm(0, 104, 110);
-    story.sm(0, 108, 110);
+    story.print_through(108);
     story.take();
     story.rs(State::ready_to_print, odd);
     story.judge(0, 110, true, 1010, odd);
@@ -370,8 +366,7 @@ TEST(FeederStopping, shouldKnowTheEndMessageWithBit24) {
 
 TEST(FeederStopping, shouldFinishOverAnUnderstoodErrorWhenAllIsPrinted) {
     Story story = reach(Phase::printing);
-    story.sm(0, 104, 110);
-    story.sm(0, 108, 110);
+    story.print_through(108);
     story.rs(State::ready_to_print, raw_error(5043));
     story.judge(0, 110, true, 1010, raw_error(5043));
     EXPECT_NE(story.take().find("; !EQ; ?RS"), std::string::npos);
@@ -381,8 +376,7 @@ TEST(FeederStopping, shouldFinishOverAnUnderstoodErrorWhenAllIsPrinted) {
 
 TEST(FeederStopping, shouldNotBelieveTheEndMessageOfAPrinterThatWasStartedAgain) {
     Story story = reach(Phase::printing);
-    story.sm(0, 104, 110);
-    story.sm(0, 108, 110);
+    story.print_through(108);
     story.stop();
     story.rs(State::ready_to_print);
     story.rs(State::printing); // somebody has started it: what it printed before and since is to be counted
@@ -448,8 +442,7 @@ TEST(FeederStopping, shouldSayThatAnOpenRunMayHaveLeftRecordsOut) {
 
 TEST(FeederStopping, shouldLeaveAnErrorAloneThatIsNotOfMailing) {
     Story story = reach(Phase::printing);
-    story.sm(0, 104, 110);
-    story.sm(0, 108, 110);
+    story.print_through(108);
     story.rs(State::ready_to_print, raw_error(4711));
     story.judge(0, 110, true, 1010, raw_error(4711));
     const std::string told = story.take();

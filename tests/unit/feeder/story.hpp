@@ -158,12 +158,17 @@ public:
         sm(3, 77, last);
         actions.clear();
     }
+    /// One after the other, the FIFO filled all the time. Forgets the actions.
+    void print_through(std::uint32_t through) {
+        for (std::uint32_t number = first; number <= through; ++number) {
+            sm(std::min(2U, last - 1 - number), number, last);
+            actions.clear();
+        }
+    }
     /// All sent and all printed, the printer has stopped itself, and the verdict is in the ledger.
     void print_all() {
         print();
-        for (std::uint32_t number = first; number < last; ++number) {
-            sm(std::min(2U, last - 1 - number), number, last);
-        }
+        print_through(last - 1);
         sm(0, last, 0);
         actions.clear();
         rs(State::ready_to_print, end_message);
