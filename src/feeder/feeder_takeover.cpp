@@ -42,7 +42,7 @@ void Feeder::takeover_step(Instant now, Actions& out) {
     const OpenRun& run = *plan_.open;
     const std::uint64_t in_printer_through = std::uint64_t{mail_.last_printed.value()} + mail_.entries + 1;
     const bool fits = std::uint64_t{mail_.entries} + 1 <= mail_.depth; // the loaded record counts as well
-    const bool leaps = mail_.last_printed.value() > chained_through_; // it was not seen there: another job's number?
+    const bool leaps = mail_.last_printed.value() > chained_through_;  // it was not seen there: another job's number?
     chained_through_ = std::max(chained_through_, in_printer_through);
     const bool plausible =
         prints_earlier_run() && may_take_over() && fits && !leaps && in_printer_through <= run.issued_through.value();
