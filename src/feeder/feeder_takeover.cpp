@@ -32,6 +32,7 @@ bool Feeder::may_take_over() const {
 void Feeder::begin_takeover(Instant now, Actions& out) {
     enter(Phase::taking_over, now, settings_.finish_timeout);
     in_printer_through_.reset();
+    chained_through_ = std::uint64_t{mail_.last_printed.value()} + mail_.entries + 1;
     number_before_count_ = mail_.last_printed;
     ask(Parameter::SM, now, out);
 }
@@ -41,8 +42,10 @@ void Feeder::takeover_step(Instant now, Actions& out) {
     const OpenRun& run = *plan_.open;
     const std::uint64_t in_printer_through = std::uint64_t{mail_.last_printed.value()} + mail_.entries + 1;
     const bool fits = std::uint64_t{mail_.entries} + 1 <= mail_.depth; // the loaded record counts as well
+    const bool leaps = mail_.last_printed.value() > chained_through_;  // it was not seen there: another job's number?
+    chained_through_ = std::max(chained_through_, in_printer_through);
     const bool plausible =
-        prints_earlier_run() && may_take_over() && fits && in_printer_through <= run.issued_through.value();
+        prints_earlier_run() && may_take_over() && fits && !leaps && in_printer_through <= run.issued_through.value();
     const bool agrees = in_printer_through_ == in_printer_through;
     in_printer_through_ = in_printer_through;
     if (!plausible || mail_reads_ > max_takeover_reads || counter_contradicts()) {

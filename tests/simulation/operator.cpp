@@ -92,9 +92,9 @@ daemon::OperatorWord Operator::decides() {
         return word;
     }
     const RecordNumber first = doubt.front().first();
-    // A jump in the numbers on the products: "the last product" would say too much. So would one that he has named
-    // before.
-    const bool named_before = judge_.last() > doubt.back().last() && judge_.last() <= named_;
+    // A jump in the numbers on the products: "the last product" would say too much. So would one from before
+    // his last word.
+    const bool from_before = judge_.last() > doubt.back().last() && judge_.last() <= spoken_of_;
     const bool jump =
         judge_.last() >= first && judge_.last() <= doubt.back().last() && !judge_.unbroken(first, judge_.last());
     const std::uint64_t dice = random_.below(100);
@@ -105,10 +105,11 @@ daemon::OperatorWord Operator::decides() {
     }
     if (dice < context_.scenario.skips_percent + context_.scenario.reprints_percent) {
         word.policy = daemon::InDoubtPolicy::reprint;
+        spoken_of_ = judge_.last(); // the products made so far tell nothing of what is printed once more
         std::for_each(doubt.begin(), doubt.end(), [this](const RecordRange& range) { judge_.will_reprint(range); });
         return word;
     }
-    if (jump || named_before || host_.ending().word_refused || random_.chance(0.2)) {
+    if (jump || from_before || host_.ending().word_refused || random_.chance(0.2)) {
         word.printed = names_products(doubt);
         context_.trace.say(context_.now, "products", *word.printed);
         return word;
@@ -133,7 +134,7 @@ daemon::OperatorWord Operator::decides() {
 /// The records in doubt that are on products, for --printed.
 std::string Operator::names_products(const std::vector<RecordRange>& doubt) {
     std::string names;
-    named_ = judge_.last();
+    spoken_of_ = judge_.last();
     for (const RecordRange& range : doubt) {
         for (std::uint64_t i = 0; i < range.count().value(); ++i) {
             const RecordNumber number = range.first() + RecordCount{i};

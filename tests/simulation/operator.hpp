@@ -34,7 +34,7 @@ private:
     Random random_;
     bool host_has_power_ = true;
     bool done_ = false;
-    RecordNumber named_; ///< the last one that he has named as printed
+    RecordNumber spoken_of_; ///< the last on a product when he gave his last word about products
 };
 
 } // namespace linefeed::simulation

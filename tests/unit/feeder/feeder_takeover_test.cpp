@@ -56,23 +56,23 @@ TEST(FeederTakeover, shouldGoOnBehindTheLastRecordInThePrinter) {
 /// Between two answers the number became one of another job that is being printed. The counter knows.
 TEST(FeederTakeover, shouldStopWhenItIsAnotherJobThatItHasTakenOver) {
     Story story = found_printing();
-    story.sm(10, 180, 200);
-    story.sm(10, 180, 200);
+    story.sm(10, 154, 200);
+    story.sm(10, 154, 200);
     story.take();
     story.granted(1, 200, 200);
     story.supplied(200);
     story.take();
-    story.sm(10, 181, 200);
+    story.sm(10, 155, 200);
     story.cc(951);
-    story.sm(9, 182, 200);
-    story.sm(9, 182, 200);
+    story.sm(9, 156, 200);
+    story.sm(9, 156, 200);
     story.wait(std::chrono::milliseconds{100});
-    story.sm(8, 183, 200);
+    story.sm(8, 157, 200);
     EXPECT_EQ(story.take().find("printed through"), std::string::npos);
     story.cc(953);
     story.expect("!ST; ?RS");
-    story.judge(0, 183, true, 953);
-    EXPECT_NE(story.take().find("in doubt 150-199"), std::string::npos);
+    story.judge(0, 157, true, 953);
+    EXPECT_NE(story.take().find("in doubt 150-"), std::string::npos);
 }
 
 /// Its records are in the printer, whether the ledger's answer comes in time or not: nobody may call them unused.
@@ -202,6 +202,21 @@ TEST(FeederTakeover, shouldHaltWhenSomethingElseWasPrinted) {
     story = found_printing(without_counter);
     story.take();
     story.sm(3, 150, 200);
+    story.expect("?SM");
+}
+
+/// Between two answers a number came that was not in the printer before, and nobody has sent it: another job's.
+TEST(FeederTakeover, shouldHaltWhenTheNumberLeapsOverWhatWasInThePrinter) {
+    Story story = found_printing();
+    story.take();
+    story.sm(3, 155, 200); // it held 154 at most
+    story.expect(halted);
+
+    story = found_printing();
+    story.take();
+    story.sm(3, 153, 200); // records of the old connection still arrive
+    story.expect("?SM");
+    story.sm(1, 157, 200);
     story.expect("?SM");
 }
 
