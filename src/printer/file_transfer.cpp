@@ -1,6 +1,7 @@
 // Listing, writing and deleting files of the printer, see file_transfer.hpp.
 #include "printer/file_transfer.hpp"
 
+#include "printer/look.hpp"
 #include "printer/printer_path.hpp"
 
 #include <algorithm>
@@ -177,7 +178,7 @@ Result<void> put_file(PrinterClient& printer, const std::string& path, std::stri
         if (!replace || there->front().is_directory) {
             return Failure{FailureKind::usage, path_text(path) + ": the printer has something of that name already"};
         }
-        const auto status = printer.ask<protocol::MachineStatus>(protocol::Parameter::RS); // none in standby
+        const auto status = ask_status(printer); // none in standby
         if (status && status->machine == protocol::MachineState::printing) {
             return Failure{FailureKind::stopped,
                            path_text(path) + ": not replaced while the printer prints: stop it first"};

@@ -4,6 +4,11 @@ namespace linefeed::printer {
 
 using protocol::Parameter;
 
+std::optional<protocol::MachineStatus> ask_status(PrinterClient& printer) {
+    const auto status = printer.ask<protocol::MachineStatus>(Parameter::RS);
+    return status || !printer.open() ? status : printer.ask<protocol::MachineStatus>(Parameter::RS);
+}
+
 Look look_at(const ClientSettings& settings) {
     Look look;
     const auto connected = PrinterClient::connect(settings);

@@ -20,4 +20,7 @@ struct Look {
 /// free for others. Blocks: at most a connection time-out for each endpoint and three reply time-outs.
 [[nodiscard]] Look look_at(const ClientSettings& settings);
 
+/// `?RS`, and once more if no answer comes: one may get lost, and what is silent twice is held to be in standby.
+[[nodiscard]] std::optional<protocol::MachineStatus> ask_status(PrinterClient& printer);
+
 } // namespace linefeed::printer

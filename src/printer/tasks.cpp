@@ -1,5 +1,6 @@
 #include "printer/tasks.hpp"
 
+#include "printer/look.hpp"
 #include "printer/printer_client.hpp"
 
 #include <algorithm>
@@ -7,7 +8,6 @@
 
 namespace linefeed::printer {
 
-using protocol::Parameter;
 
 namespace {
 
@@ -28,7 +28,7 @@ bool may_be_done_unheard(const Task& task) {
 
 /// Asks the machine itself.
 Result<void> check_not_printing(const Task& task, PrinterClient& printer) {
-    const auto status = printer.ask<protocol::MachineStatus>(Parameter::RS);
+    const auto status = ask_status(printer);
     if (!status) {
         return may_be_done_unheard(task) && printer.open()
                    ? Result<void>{}

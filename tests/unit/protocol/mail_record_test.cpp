@@ -176,9 +176,7 @@ TEST(MailRecordEncoder, shouldTakeExactly2048Bytes) {
     EXPECT_EQ(refused(1, {std::string(512, 'x')}, {.charset = Charset::unicode_hex}),
               error(RecordErrc::too_long, 1, 0, 0, 0, 2050))
         << "hex counts fourfold";
-    std::string text(1023, 'x');
-    text += "äääääääääääää";
-    EXPECT_EQ(encoded(1, {text}).size(), "^0=MR1\t\r"sv.size() + 1036)
+    EXPECT_EQ(encoded(1, {std::string(1023, 'x') + "äääääääääääää"}).size(), "^0=MR1\t\r"sv.size() + 1036)
         << "bytes as sent, not as read";
 }
 
