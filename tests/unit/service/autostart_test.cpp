@@ -237,7 +237,10 @@ TEST_F(AutostartTest, shouldNotTryAgainByItselfWhatCouldNotBeStarted) {
     open(settings("127.0.0.1:" + port));
     drop("a.csv", 10, 1);
     const spool::JobId a = job_named("a.csv");
-    ASSERT_TRUE(comes_to(a, JobPhase::stopped));
+    // Between the word that it has begun and its start it stands as after a crash.
+    ASSERT_TRUE(wait_until([&] {
+        return view(a).phase == JobPhase::stopped && view(a).message.find("the service ended") == std::string::npos;
+    }));
     SimulatedPrinter printer{directory_ / "tape.csv", 1000, port};
     drop("b.csv", 10, 11);
     const spool::JobId b = job_named("b.csv");
