@@ -8,7 +8,6 @@
 
 namespace linefeed::printer {
 
-
 namespace {
 
 std::vector<Task> joined(const auto& lists) {

@@ -14,10 +14,10 @@ Result<protocol::Profile> ask_profile(const ClientSettings& settings) {
     if (profile) {
         return *profile;
     }
-    const std::string told = version ? "says that it is a \"" + protocol::printable(version->type) +
-                                           "\" with firmware \"" + protocol::printable(version->firmware) +
-                                           "\", for which no profile is known"
-                                     : "does not say what it is (?VS)";
+    const std::string told = version
+                                 ? "says that it is a \"" + protocol::printable(version->type) + "\" with firmware \"" +
+                                       protocol::printable(version->firmware) + "\", for which no profile is known"
+                                 : "does not say what it is (?VS)";
     return Failure{FailureKind::unreachable,
                    settings.address + ": the printer " + told + ": name its profile with --profile"};
 }
