@@ -71,6 +71,13 @@ Finding profile(const protocol::VersionInfo& version, const PreflightRules& rule
     const std::string_view chosen = rules.printer.profile.name;
     const auto told = protocol::profile_for(version.type, version.firmware);
     if (protocol::is_automatic(rules.printer.profile)) {
+        if (told && told->escapes == protocol::EscapeMode::none &&
+            rules.record_escapes == protocol::EscapeMode::backslash) {
+            return problem(check,
+                           "auto: " + std::string{told->name} + ", which knows no escapes; the job was imported for " +
+                               "firmware that does, and ^ and \\ would come out wrong",
+                           "Import its file again for this printer.");
+        }
         return told ? ok(check, "auto: " + std::string{told->name} + ", since it is a " + version.type + ", firmware " +
                                     version.firmware)
                     : warning(check, "auto, but the printer does not say a type and a firmware that are known",

@@ -36,6 +36,8 @@ struct PreflightRules {
     std::string known_serial_number{}; ///< of the last time; empty = unknown
     /// A run of ours may be under way on it, which the start would stop or go on with.
     bool may_be_printing = false;
+    /// What the records of the job that is to start were written for; absent = there is no job yet.
+    std::optional<protocol::EscapeMode> record_escapes{};
 };
 
 /// In this order: reachable, identity, profile, ready, nozzle, cover, errors, job_file, fifo, stop_point, counter,

@@ -122,9 +122,16 @@ private:
 
     // line_printer.cpp: the printer besides printing
     [[nodiscard]] Result<std::shared_ptr<void>> reserve();
+    [[nodiscard]] std::shared_ptr<void> undisturbed();
+    [[nodiscard]] protocol::Profile known_profile(const config::PrinterSettings& own) const;
     [[nodiscard]] Result<printer::ClientSettings> client_settings() const;
+    /// What a look at it is for: a job that is to start there, or nothing yet.
+    struct Purpose {
+        bool may_be_printing = false;
+        std::optional<protocol::EscapeMode> record_escapes{};
+    };
     [[nodiscard]] std::vector<daemon::Finding> look_at_printer(const printer::ClientSettings& client,
-                                                               bool may_be_printing);
+                                                               const Purpose& purpose);
     void glance();
     void learn_identity(const std::optional<protocol::VersionInfo>& version);
     void hear(const daemon::PreflightFacts& facts);
@@ -138,7 +145,7 @@ private:
                                                                             const daemon::JobRunSettings& settings);
     void take_note_of(spool::JobId other);
     [[nodiscard]] Result<daemon::JobRunSettings> run_settings(const spool::Job& job);
-    [[nodiscard]] Result<std::optional<Ending>> check_printer(spool::JobId job, bool may_be_printing);
+    [[nodiscard]] Result<std::optional<Ending>> check_printer(const spool::Job& job, bool may_be_printing);
     [[nodiscard]] Ending run(const JobFacts& facts, RecordRange wanted, const std::optional<daemon::OpenIssue>& open,
                              const daemon::JobRunSettings& settings);
     void watch(daemon::JobRun& run, spool::JobId job);
@@ -158,6 +165,7 @@ private:
     bool begun_ = false;                 ///< the thread has taken the order
     bool checking_ = false;              ///< preflight
     std::uint32_t reserved_ = 0; ///< for so many commands that no job may meet: the next one waits for their end
+    std::uint32_t talks_ = 0;    ///< so many go on that somebody has asked for: no glance at the printer meanwhile
     bool stop_requested_ = false;
     bool held_ = false; ///< stopped by an operator
     bool closing_ = false;
@@ -180,7 +188,7 @@ private:
     std::shared_ptr<printer::PanelHold> panel_;
 
     daemon::PrinterWatch watch_; ///< the thread's own
-    std::mutex conversations_;   ///< one at a time, besides printing: the printer may serve no more
+    std::mutex conversations_;   ///< short ones, one at a time, besides printing: the printer may serve no more
 
     std::mutex panel_orders_; ///< one at a time holds or releases the panel, also while the printer is talked to
 

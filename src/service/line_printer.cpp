@@ -11,6 +11,15 @@
 
 namespace linefeed::service {
 
+/// That of the settings; an automatic one as the printer has told, if it has.
+protocol::Profile Line::known_profile(const config::PrinterSettings& own) const {
+    const std::lock_guard lock{mutex_};
+    const auto told = protocol::is_automatic(own.profile) && heard_.version
+                          ? protocol::profile_for(heard_.version->type, heard_.version->firmware)
+                          : std::nullopt;
+    return told.value_or(own.profile);
+}
+
 Result<printer::ClientSettings> Line::client_settings() const {
     const SharedSettings all = settings();
     const config::PrinterSettings* const own = all->printer(printer_);
@@ -23,12 +32,12 @@ Result<printer::ClientSettings> Line::client_settings() const {
     }
     return printer::ClientSettings{.address = link::to_string(own->address),
                                    .endpoints = std::move(*endpoints),
-                                   .escapes = own->profile.escapes,
+                                   .escapes = known_profile(*own).escapes,
                                    .connect_timeout = own->connect_timeout,
                                    .reply_timeout = own->reply_timeout};
 }
 
-std::vector<daemon::Finding> Line::look_at_printer(const printer::ClientSettings& client, bool may_be_printing) {
+std::vector<daemon::Finding> Line::look_at_printer(const printer::ClientSettings& client, const Purpose& purpose) {
     const SharedSettings all = settings();
     const daemon::PreflightFacts facts = [&] {
         const std::lock_guard alone{conversations_};
@@ -41,35 +50,33 @@ std::vector<daemon::Finding> Line::look_at_printer(const printer::ClientSettings
         const std::lock_guard lock{mutex_};
         known_serial_number = known_serial_number_;
     }
-    return daemon::judge(facts, {*all, *all->printer(printer_), known_serial_number, may_be_printing});
+    return daemon::judge(facts, {*all, *all->printer(printer_), known_serial_number, purpose.may_be_printing,
+                                 purpose.record_escapes});
 }
 
 protocol::Profile Line::profile() {
     const SharedSettings all = settings();
     const config::PrinterSettings* const own = all->printer(printer_);
-    const protocol::Profile chosen = own == nullptr ? protocol::profiles.front() : own->profile;
-    if (!protocol::is_automatic(chosen)) {
-        return chosen;
+    if (own == nullptr) {
+        return protocol::profiles.front();
     }
-    std::optional<protocol::VersionInfo> version;
-    {
-        const std::lock_guard lock{mutex_};
-        version = heard_.version;
+    const protocol::Profile known = known_profile(*own);
+    const auto client = client_settings();
+    if (!protocol::is_automatic(known) || !client) {
+        return known;
     }
-    if (!version) {
-        const auto client = client_settings();
-        const auto connected = client ? printer::PrinterClient::connect(*client) : client.error();
-        version = connected ? (*connected)->ask<protocol::VersionInfo>(protocol::Parameter::VS) : std::nullopt;
-        const std::lock_guard lock{mutex_};
-        heard_.version = version ? version : heard_.version;
-    }
-    const auto told = version ? protocol::profile_for(version->type, version->firmware) : std::nullopt;
-    return told.value_or(chosen);
+    const printer::Look look = [&] {
+        const std::lock_guard alone{conversations_};
+        return printer::look_at(*client);
+    }();
+    hear(look);
+    return known_profile(*own);
 }
 
 Result<std::vector<daemon::Finding>> Line::preflight() {
     const auto client = client_settings();
-    return client ? Result<std::vector<daemon::Finding>>{look_at_printer(*client, !idle())} : client.error();
+    return client ? Result<std::vector<daemon::Finding>>{look_at_printer(*client, {.may_be_printing = !idle()})}
+                  : client.error();
 }
 
 Result<void> Line::acknowledge(std::uint32_t error) {
@@ -119,6 +126,7 @@ Result<std::string> Line::carry_out(const printer::Task& task, std::string_view 
             return checked.error();
         }
     }
+    const auto talk = undisturbed();
     const auto connected = printer::PrinterClient::connect(*client);
     if (!connected) {
         return connected.error();
@@ -137,8 +145,20 @@ Result<void> Line::talk(bool alone, const std::function<Result<void>(printer::Pr
     if (!client || !reservation) {
         return client ? reservation.error() : client.error();
     }
+    const auto talk = undisturbed();
     const auto connected = printer::PrinterClient::connect(*client);
     return connected ? words(**connected) : connected.error();
+}
+
+/// Before a conversation that may be long; until what comes back goes. A glance that is under way is waited for.
+std::shared_ptr<void> Line::undisturbed() {
+    const std::lock_guard alone{conversations_};
+    const std::lock_guard lock{mutex_};
+    ++talks_;
+    return {this, [](Line* line) {
+                const std::lock_guard inner{line->mutex_};
+                --line->talks_;
+            }};
 }
 
 /// Before what no job may meet; until the reservation goes.
@@ -215,8 +235,12 @@ void Line::glance() {
         return; // it is being taken away
     }
     const std::unique_lock alone{conversations_, std::try_to_lock};
+    const bool free = alone && [this] {
+        const std::lock_guard lock{mutex_};
+        return talks_ == 0;
+    }();
     std::optional<printer::Look> look;
-    if (client && alone) {
+    if (client && free) {
         client->connect_timeout = std::min(client->connect_timeout, patience);
         client->reply_timeout = std::min(client->reply_timeout, patience);
         look = printer::look_at(*client);

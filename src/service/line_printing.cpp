@@ -76,7 +76,7 @@ Result<daemon::JobRunSettings> Line::run_settings(const spool::Job& job) {
     settings.connect_timeout = own.connect_timeout;
     settings.meters = &meters_;
     settings.frames = &frames_;
-    settings.session.escapes = own.profile.escapes;
+    settings.session.escapes = known_profile(own).escapes;
     settings.session.charsets = daemon::record_format(job).charsets;
     settings.session.reply_timeout = own.reply_timeout;
     settings.session.feeder.pacing = own.pacing;
@@ -103,7 +103,7 @@ Result<Ending> Line::print_runs(spool::JobId job) {
     if (*hindrance) {
         return Ending{job, (*hindrance)->outcome, (*hindrance)->detail};
     }
-    if (auto hindered = check_printer(job, before->open.has_value()); !hindered || *hindered) {
+    if (auto hindered = check_printer(before->facts.job, before->open.has_value()); !hindered || *hindered) {
         return hindered ? Result<Ending>{std::move(**hindered)} : hindered.error();
     }
     Ending ending{job, {.code = OutcomeCode::nothing_to_print, .issued = false}, {}};
@@ -187,7 +187,7 @@ void Line::take_note_of(spool::JobId other) {
 
 /// The look at the printer before the start; each finding that is not good is told. What stands in the way; absent =
 /// nothing does.
-Result<std::optional<Ending>> Line::check_printer(spool::JobId job, bool may_be_printing) {
+Result<std::optional<Ending>> Line::check_printer(const spool::Job& job, bool may_be_printing) {
     const auto client = client_settings();
     if (!client) {
         return client.error();
@@ -196,7 +196,8 @@ Result<std::optional<Ending>> Line::check_printer(spool::JobId job, bool may_be_
         const std::lock_guard lock{mutex_};
         checking_ = true;
     }
-    const std::vector<daemon::Finding> findings = look_at_printer(*client, may_be_printing);
+    const std::vector<daemon::Finding> findings = look_at_printer(
+        *client, {.may_be_printing = may_be_printing, .record_escapes = daemon::record_format(job).escapes});
     {
         const std::lock_guard lock{mutex_};
         checking_ = false;
@@ -208,12 +209,12 @@ Result<std::optional<Ending>> Line::check_printer(spool::JobId job, bool may_be_
         case daemon::Severity::ok:
             break;
         case daemon::Severity::warning:
-            event(event_kind::printer_warning, job, words);
+            event(event_kind::printer_warning, job.id, words);
             break;
         case daemon::Severity::problem:
-            event(event_kind::printer_error, job, words);
+            event(event_kind::printer_error, job.id, words);
             if (!ending) {
-                ending = Ending{job, {.code = outcome_of(finding), .issued = false}, words, true};
+                ending = Ending{job.id, {.code = outcome_of(finding), .issued = false}, words, true};
             }
             break;
         }

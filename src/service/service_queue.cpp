@@ -99,8 +99,8 @@ Result<void> Service::check_fits(const JobFacts& facts, const std::string& print
     if (own == nullptr) {
         return wrong("printer " + printer + " is not in the settings any more: queue the job at another");
     }
-    // Records of firmware without escapes hold nothing that would need any: they mean the same everywhere. An automatic
-    // profile had them written as the printer said.
+    // Records of firmware without escapes hold nothing that would need any: they mean the same everywhere. Of an
+    // automatic profile the printer tells at the start.
     if (daemon::record_format(facts.job).escapes == protocol::EscapeMode::backslash &&
         own->profile.escapes == protocol::EscapeMode::none && !protocol::is_automatic(own->profile)) {
         return wrong(name_of(facts.job.id) + " was imported for another firmware than that of " + printer + " (" +

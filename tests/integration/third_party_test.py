@@ -199,7 +199,7 @@ class SimulatorOptions(harness.TestCase):
 
     def test_the_list_of_commands(self):
         done = subprocess.run([BIN / "linefeed-sim", "--commands"], capture_output=True, text=True, timeout=10, check=True)
-        self.assertEqual(22 + 22 + 30 + 3 + 7, done.stdout.count("\n| `^0"))
+        self.assertEqual(22 + 24 + 31 + 3 + 7, done.stdout.count("\n| `^0"))
 
 
 if __name__ == "__main__":

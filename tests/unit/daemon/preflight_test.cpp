@@ -36,7 +36,7 @@ PreflightFacts healthy() {
 class PreflightTest : public testing::Test {
 protected:
     [[nodiscard]] std::vector<Finding> findings() const {
-        return judge(facts_, {settings_, printer_, known_serial_, may_be_printing_});
+        return judge(facts_, {settings_, printer_, known_serial_, may_be_printing_, record_escapes_});
     }
     /// That of this check; one line: severity, words and advice.
     [[nodiscard]] std::string finding(std::string_view check) const {
@@ -63,6 +63,7 @@ protected:
     config::PrinterSettings printer_;
     std::string known_serial_;
     bool may_be_printing_ = false;
+    std::optional<protocol::EscapeMode> record_escapes_;
 };
 
 TEST_F(PreflightTest, shouldFindNothingAmissWithAHealthyPrinter) {
@@ -130,6 +131,17 @@ TEST_F(PreflightTest, shouldSayWhichProfileAnAutomaticOneIs) {
     facts_.version->type = "LJ9";
     EXPECT_THAT(finding("profile"), HasSubstr("warning: auto, but the printer does not say"));
     EXPECT_THAT(finding("profile"), HasSubstr("Name its profile"));
+}
+
+TEST_F(PreflightTest, shouldStartNoRecordsWithEscapesWhereThePrinterKnowsNone) {
+    printer_.profile = *protocol::profile_by_name("auto");
+    record_escapes_ = protocol::EscapeMode::backslash;
+    EXPECT_EQ(finding("profile"), "ok: auto: jet3up, since it is a JET3up, firmware V62.0.9.0");
+    facts_.version->type = "JET3";
+    EXPECT_EQ(finding("profile"), "problem: auto: jet3, which knows no escapes; the job was imported for firmware that "
+                                  "does, and ^ and \\ would come out wrong - Import its file again for this printer.");
+    record_escapes_ = protocol::EscapeMode::none;
+    EXPECT_EQ(finding("profile"), "ok: auto: jet3, since it is a JET3, firmware V62.0.9.0");
 }
 
 TEST_F(PreflightTest, shouldNoticeAProfileWithOtherEscapes) {
