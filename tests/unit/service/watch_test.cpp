@@ -1,5 +1,6 @@
 // Printers with which nothing is done: what is seen of them, and which machine stands behind a name.
 #include "service_fixture.hpp"
+#include "support/peer.hpp"
 
 namespace linefeed::service {
 namespace {
@@ -54,6 +55,23 @@ TEST_F(WatchTest, shouldLeaveAPrinterAloneThatIsNotToBeWatched) {
     text_ = settings(printer);
     ASSERT_TRUE(service_->reload(anna)) << "it takes effect at once";
     EXPECT_TRUE(comes_to_show([](const auto& view) { return view.watched; }));
+}
+
+/// A printer that serves one connection at a time would seem to be gone.
+TEST_F(WatchTest, shouldLeaveAPrinterAloneWhileSomebodyTalksToIt) {
+    printer::Peer printer{[](std::string_view frame) {
+        return printer::Peer::Reaction{frame == "^0?RS" ? "^0=RS2\t5\t0\t0\t9\t0\r" : ""};
+    }};
+    open(settings_text({printer.settings().address.substr(6)}, ", watch_interval: 1 s, reply_timeout: 100 ms"));
+    ASSERT_TRUE(comes_to_show([](const auto& view) { return view.link == daemon::LinkState::up; }));
+    std::thread reader{[this] { EXPECT_FALSE(service_->read_file("line1", "FFSDISK\\Jobs\\a.job")); }};
+    ASSERT_TRUE(wait_until([&] { return printer.heard().find("^0$RF") != std::string::npos; }));
+    const int connections = printer.connections();
+    std::this_thread::sleep_for(std::chrono::milliseconds{2300});
+    EXPECT_EQ(printer.connections(), connections);
+    printer.cut();
+    reader.join();
+    EXPECT_TRUE(wait_until([&] { return printer.connections() > connections; })) << "then it is looked at again";
 }
 
 TEST_F(WatchTest, shouldNotStartOnAnotherMachineBeforeAnOperatorHasAcceptedIt) {
