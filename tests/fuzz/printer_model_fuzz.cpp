@@ -18,7 +18,8 @@ using namespace linefeed::simulator;
 
 PrinterSettings settings_of(std::uint8_t choice) {
     PrinterSettings settings;
-    settings.profile = protocol::profiles[choice % protocol::profiles.size()];
+    static_assert(protocol::is_automatic(protocol::profiles.back())); // which no printer is
+    settings.profile = protocol::profiles[choice % (protocol::profiles.size() - 1)];
     settings.counters = {{1, 9, 0}, {5, 2, 3}};
     settings.power_up = static_cast<PowerUpState>(choice / 4 % 3);
     settings.depth = 8;

@@ -1,4 +1,4 @@
-// Printers with an automatic profile: what the printer says decides how records are written, and whether they may start.
+// Printers with an automatic profile: what the printer says decides how records are written, and where they may start.
 #include "service_fixture.hpp"
 
 namespace linefeed::service {
