@@ -50,8 +50,8 @@ std::vector<daemon::Finding> Line::look_at_printer(const printer::ClientSettings
         const std::lock_guard lock{mutex_};
         known_serial_number = known_serial_number_;
     }
-    return daemon::judge(facts, {*all, *all->printer(printer_), known_serial_number, purpose.may_be_printing,
-                                 purpose.record_escapes});
+    return daemon::judge(
+        facts, {*all, *all->printer(printer_), known_serial_number, purpose.may_be_printing, purpose.record_escapes});
 }
 
 protocol::Profile Line::profile() {
