@@ -127,7 +127,7 @@ private:
     Result<void> connect() {
         error_code error;
         if (address_.socket.empty()) {
-            const auto endpoints = link::resolve({address_.host, address_.port});
+            const auto endpoints = link::resolve(link::TcpAddress{address_.host, address_.port});
             if (!endpoints) {
                 return endpoints.error();
             }

@@ -17,7 +17,7 @@ Result<ServiceAddress> parse_service_address(std::string_view text) {
     const bool has_port =
         text.find(':', text.rfind(']') == std::string_view::npos ? text.find("//") : text.rfind(']')) !=
         std::string_view::npos;
-    const auto tcp = link::parse_printer_address(text);
+    const auto tcp = link::parse_tcp_address(text);
     if (!tcp) {
         return Failure{FailureKind::usage, '"' + std::string{text} +
                                                "\" is not the address of a service: expected the path of its socket, "
@@ -27,8 +27,7 @@ Result<ServiceAddress> parse_service_address(std::string_view text) {
 }
 
 std::string to_string(const ServiceAddress& address) {
-    return address.socket.empty() ? to_string(link::PrinterAddress{address.host, address.port})
-                                  : address.socket.string();
+    return address.socket.empty() ? to_string(link::TcpAddress{address.host, address.port}) : address.socket.string();
 }
 
 } // namespace linefeed::api

@@ -274,13 +274,9 @@ bool PathValue::read(const Node& node, const std::string& key, Context& context,
 }
 
 bool AddressValue::read(const Node& node, const std::string& key, Context& context, link::PrinterAddress& out) const {
-    const std::string expected = "a printer address, tcp://HOST:PORT such as tcp://192.168.1.20:3000";
+    const std::string expected = "a printer address, " + std::string{link::printer_address_forms};
     std::string text;
     if (!read_text(node, key, expected, context, false, text)) {
-        return false;
-    }
-    if (text.starts_with("serial:") || text.starts_with("/dev/")) {
-        refuse_value(node, key, expected, context, "; printers on a serial port are not supported");
         return false;
     }
     const auto address = link::parse_printer_address(text);

@@ -9,7 +9,7 @@
 #include "feeder/outcome.hpp"
 #include "link/handler_memory.hpp"
 #include "link/printer_address.hpp"
-#include "link/tcp_link.hpp"
+#include "link/printer_link.hpp"
 #include "session/session.hpp"
 #include "spool/spool.hpp"
 
@@ -25,7 +25,7 @@ namespace linefeed::daemon {
 
 struct JobRunSettings {
     link::PrinterAddress printer;
-    std::vector<boost::asio::ip::tcp::endpoint> endpoints; ///< of the printer, resolved
+    link::Endpoints endpoints; ///< of the printer, resolved
     session::SessionSettings session;
     Duration connect_timeout = std::chrono::seconds{3};
     // Of the printer, if anybody wants them; both live longer than the run.
@@ -103,7 +103,7 @@ private:
     /// Lives and dies on the feed thread.
     struct Edge {
         explicit Edge(JobRun& run);
-        link::TcpLink link;
+        link::PrinterLink link;
         std::shared_ptr<link::HandlerMemory> memory = std::make_shared<link::HandlerMemory>();
         boost::asio::posix::stream_descriptor replies;
     };

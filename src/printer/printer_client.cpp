@@ -17,51 +17,31 @@ PrinterClient::PrinterClient(const ClientSettings& settings)
     : settings_(settings)
     , decoder_(settings.escapes) {}
 
-/// Closing with unread bytes would reset the connection, which could cost the printer the last command.
+/// The last command may still be on its way out of a serial port.
 PrinterClient::~PrinterClient() {
-    error_code ignored;
-    socket_.shutdown(asio::ip::tcp::socket::shutdown_send, ignored);
-    constexpr int reads_at_most = 16;
-    socket_.non_blocking(true, ignored);
-    for (int i = 0; i < reads_at_most && !ignored; ++i) {
-        static_cast<void>(socket_.read_some(asio::buffer(buffer_), ignored));
+    const auto deadline = Clock::now() + settings_.reply_timeout;
+    constexpr auto look_again = std::chrono::milliseconds{2};
+    while (open_ && channel_.bytes_waiting() > 0 && Clock::now() < deadline) {
+        context_.restart();
+        context_.run_for(look_again);
     }
-    socket_.close(ignored);
+    channel_.hang_up();
 }
 
 Result<std::unique_ptr<PrinterClient>> PrinterClient::connect(const ClientSettings& settings) {
     std::unique_ptr<PrinterClient> client{new PrinterClient{settings}};
-    std::string problem = "it has no address";
-    for (const auto& endpoint : settings.endpoints) {
-        problem = client->connect_to(endpoint);
-        if (problem.empty()) {
-            return client;
-        }
+    std::string problem;
+    link::Dialer dialer{client->context_};
+    dialer.dial(settings.endpoints, settings.connect_timeout, [&](link::Channel channel, const std::string& reason) {
+        client->channel_ = std::move(channel);
+        problem = reason;
+    });
+    client->context_.run();
+    client->open_ = client->channel_.is_open();
+    if (!client->open_) {
+        return Failure{FailureKind::unreachable, settings.address + ": " + problem};
     }
-    return Failure{FailureKind::unreachable, settings.address + ": " + problem};
-}
-
-/// What is wrong; empty = it is connected.
-std::string PrinterClient::connect_to(const asio::ip::tcp::endpoint& endpoint) {
-    error_code result = asio::error::would_block;
-    error_code ignored;
-    socket_.close(ignored);
-    socket_.async_connect(endpoint, [&result](const error_code& error) { result = error; });
-    context_.restart();
-    context_.run_for(settings_.connect_timeout);
-    if (result == asio::error::would_block) {
-        socket_.close(ignored);
-        context_.restart();
-        context_.run();
-        const auto ms = std::chrono::duration_cast<std::chrono::milliseconds>(settings_.connect_timeout);
-        return "no connection within " + std::to_string(ms.count()) + " ms";
-    }
-    if (result) {
-        return result.message();
-    }
-    socket_.set_option(asio::ip::tcp::no_delay{true}, ignored);
-    open_ = true;
-    return {};
+    return client;
 }
 
 bool PrinterClient::send(protocol::Action action) {
@@ -119,13 +99,12 @@ bool PrinterClient::write(const std::string& bytes) {
     }
     observer_(true, bytes);
     error_code result = asio::error::would_block;
-    asio::async_write(socket_, asio::buffer(bytes),
+    asio::async_write(channel_, asio::buffer(bytes),
                       [&result](const error_code& error, std::size_t) { result = error; });
     context_.restart();
     context_.run_for(settings_.reply_timeout);
     if (result) { // also where it takes no bytes at all
-        error_code ignored;
-        socket_.close(ignored);
+        channel_.hang_up();
         context_.restart();
         context_.run();
         open_ = false;
@@ -137,15 +116,14 @@ bool PrinterClient::write(const std::string& bytes) {
 std::string_view PrinterClient::read(Clock::time_point deadline) {
     error_code result = asio::error::would_block;
     std::size_t size = 0;
-    socket_.async_read_some(asio::buffer(buffer_), [&](const error_code& error, std::size_t bytes) {
+    channel_.async_read_some(asio::buffer(buffer_), [&](const error_code& error, std::size_t bytes) {
         result = error;
         size = bytes;
     });
     context_.restart();
     context_.run_until(deadline);
     if (result == asio::error::would_block) {
-        error_code ignored;
-        socket_.cancel(ignored);
+        channel_.cancel();
         context_.restart();
         context_.run();
     } else if (result) {

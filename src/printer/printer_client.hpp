@@ -4,12 +4,12 @@
 
 #include "base/failure.hpp"
 #include "base/time.hpp"
+#include "link/dialer.hpp"
 #include "protocol/escapes.hpp"
 #include "protocol/frame_decoder.hpp"
 #include "protocol/messages.hpp"
 
 #include <boost/asio/io_context.hpp>
-#include <boost/asio/ip/tcp.hpp>
 
 #include <array>
 #include <chrono>
@@ -19,13 +19,12 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <vector>
 
 namespace linefeed::printer {
 
 struct ClientSettings {
-    std::string address;                                   ///< for people
-    std::vector<boost::asio::ip::tcp::endpoint> endpoints; ///< tried in turn; resolved
+    std::string address;       ///< for people
+    link::Endpoints endpoints; ///< resolved
     protocol::EscapeMode escapes = protocol::EscapeMode::backslash;
     Duration connect_timeout = std::chrono::seconds{3}; ///< for each endpoint
     Duration reply_timeout = std::chrono::seconds{2};
@@ -96,7 +95,6 @@ private:
     using Clock = std::chrono::steady_clock;
 
     explicit PrinterClient(const ClientSettings& settings);
-    [[nodiscard]] std::string connect_to(const boost::asio::ip::tcp::endpoint& endpoint);
     [[nodiscard]] bool write(const std::string& bytes);
     [[nodiscard]] std::string_view read(Clock::time_point deadline);
     /// What stands in one read; true when the listener is done.
@@ -106,7 +104,7 @@ private:
 
     ClientSettings settings_;
     boost::asio::io_context context_{1};
-    boost::asio::ip::tcp::socket socket_{context_};
+    link::Channel channel_{context_};
     protocol::FrameDecoder decoder_;
     ConversationOddities oddities_;
     Observer observer_ = [](bool, std::string_view) {};

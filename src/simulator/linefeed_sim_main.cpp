@@ -61,6 +61,10 @@ int run(const SimulatorSettings& settings, const SimOptions& typed, bool json_wa
     for (const std::string& address : *addresses) {
         std::cout << "linefeed-sim: listening on " << address << std::endl;
     }
+    if (settings.server.serial) {
+        std::cout << "linefeed-sim: serial line at " << settings.server.serial->link << ", "
+                  << settings.server.serial->baud << " baud" << std::endl;
+    }
     const auto ended = fleet.run();
     const int told = tell(fleet.statistics(), json_wanted, typed.summary_json.empty() ? "-" : typed.summary_json);
     const auto reported = fleet.write_report();

@@ -2,6 +2,7 @@
 #include "simulator/server.hpp"
 
 #include "simulator/client_session.hpp"
+#include "simulator/serial_line.hpp"
 
 #include <boost/asio/error.hpp>
 
@@ -52,6 +53,15 @@ Result<std::string> Server::listen(const std::string& host, const std::string& p
     return (bound.address().is_v6() ? "[" + address + "]" : address) + ":" + std::to_string(bound.port());
 }
 
+Result<void> Server::open_serial() {
+    if (!settings_.serial) {
+        return {};
+    }
+    serial_ = std::make_unique<SerialLine>(io_, handler_, serial_id, *settings_.serial, settings_.escapes,
+                                           settings_.reply_delay);
+    return serial_->open();
+}
+
 void Server::accept() {
     acceptor_.async_accept([this](const error_code& error, tcp::socket socket) {
         if (error == boost::asio::error::operation_aborted) {
@@ -80,13 +90,24 @@ void Server::accepted(tcp::socket socket) {
     session->start();
 }
 
+std::size_t Server::connections() const {
+    return sessions_.size() + (serial_ && serial_->in_use() ? 1 : 0);
+}
+
 void Server::send(ConnectionId connection, std::string bytes) {
+    if (is_serial(connection)) {
+        serial_->send(bytes);
+        return;
+    }
     if (const auto found = sessions_.find(connection); found != sessions_.end()) {
         found->second->send(std::move(bytes));
     }
 }
 
 void Server::read_available() {
+    if (serial_) {
+        serial_->read_available();
+    }
     if (sessions_.size() == 1) { // the usual case, without allocation
         const auto session = sessions_.begin()->second;
         session->read_available();
@@ -102,6 +123,9 @@ void Server::read_available() {
 }
 
 void Server::close_connections() {
+    if (serial_) {
+        serial_->replug();
+    }
     while (!sessions_.empty()) {
         const auto session = sessions_.begin()->second;
         session->close();
@@ -112,6 +136,7 @@ void Server::close() {
     error_code ignored;
     acceptor_.close(ignored);
     retry_.cancel();
+    serial_.reset();
     close_connections();
 }
 

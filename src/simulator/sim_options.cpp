@@ -85,7 +85,7 @@ void add_line_options(CLI::App& app, SimOptions& typed, ConveyorSettings& convey
     app.add_option("--jitter", conveyor.jitter_percent, "Percent of the period, each way")
         ->check(between(0, max_jitter_percent))
         ->group(group);
-    app.add_option("--seed", conveyor.seed, "Of the jitter and of the block errors")->group(group);
+    app.add_option("--seed", conveyor.seed, "Of the jitter, the block errors and the noise")->group(group);
     app.add_option("--products", typed.products,
                    "Stop the conveyor after so many PrintGos that found the printer printing")
         ->check(CLI::PositiveNumber)
@@ -114,6 +114,19 @@ void add_fault_options(CLI::App& app, SimOptions& typed) {
         ->group(group);
 }
 
+void add_serial_options(CLI::App& app, SimOptions& typed) {
+    const std::string group = "Serial line";
+    constexpr std::uint32_t fastest = 1000000;
+    auto* const serial = app.add_option("--serial", typed.serial, "Path at which a serial port to the printer appears");
+    serial->group(group);
+    app.add_option("--baud", typed.baud, "Speed of the serial line, 8N1")
+        ->check(CLI::Range(300U, fastest))
+        ->needs(serial)
+        ->group(group);
+    app.add_option("--damage", typed.damage, "One byte in so many is damaged, each way")->needs(serial)->group(group);
+    app.add_option("--loss", typed.loss, "One byte in so many gets lost, each way")->needs(serial)->group(group);
+}
+
 void add_run_options(CLI::App& app, SimOptions& typed, SimulatorSettings& settings) {
     app.add_option("--listen", typed.listen, "HOST:PORT; port 0 picks a free one");
     app.add_option("--tape", settings.tape, "CSV file of what was printed: time_ns,number,text");
@@ -135,6 +148,7 @@ void add_run_options(CLI::App& app, SimOptions& typed, SimulatorSettings& settin
 
 void add_options(CLI::App& app, SimOptions& typed, SimulatorSettings& settings) {
     add_run_options(app, typed, settings);
+    add_serial_options(app, typed);
     add_line_options(app, typed, settings.conveyor);
     add_printer_options(app, typed, settings.printer);
     add_fault_options(app, typed);

@@ -14,6 +14,10 @@ namespace linefeed::simulator {
 /// The options as they are typed.
 struct SimOptions {
     std::string listen = "127.0.0.1:3000";
+    std::string serial;
+    std::uint32_t baud = 115200;
+    std::uint64_t damage = 0;
+    std::uint64_t loss = 0;
     std::string profile = "jet3up";
     std::string charset = "latin1";
     std::vector<std::string> habits;

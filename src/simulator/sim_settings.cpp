@@ -199,11 +199,21 @@ void apply_options(SimulatorSettings& settings, const SimOptions& typed, bool pr
     }
     settings.charset = *charset;
     settings.count_misses = settings.conveyor.keeps_grid = !typed.report.empty();
+    if (typed.printers > 1 && !typed.serial.empty()) {
+        refuse("--printers", "more than one exclude --serial");
+    }
     if (typed.printers > 1 && (settings.tape || typed.exit_when_idle > 0)) {
         refuse("--printers", "more than one exclude --tape and --exit-when-idle");
     }
     settings.server.escapes = settings.printer.profile.escapes;
     settings.server.reply_delay = from_ms(typed.reply_delay_ms);
+    if (!typed.serial.empty()) {
+        settings.server.serial = SerialSettings{.link = typed.serial,
+                                                .baud = typed.baud,
+                                                .one_damaged_in = typed.damage,
+                                                .one_lost_in = typed.loss,
+                                                .seed = settings.conveyor.seed};
+    }
     settings.conveyor.start_delay = from_ms(typed.start_delay_ms);
     if (typed.products > 0) {
         settings.products = typed.products;

@@ -51,6 +51,10 @@ Simulator::Simulator(SimulatorSettings settings, boost::asio::io_context& io)
 }
 
 Result<std::string> Simulator::open() {
+    const auto line = server_.open_serial();
+    if (!line) {
+        return line.error();
+    }
     auto address = server_.listen(settings_.host, settings_.port);
     if (address && settings_.tape) {
         auto tape = Tape::open(*settings_.tape);
@@ -121,7 +125,9 @@ void Simulator::on_damaged_bytes(ConnectionId) {
 }
 
 void Simulator::on_disconnected(ConnectionId connection) {
-    model_.disconnected(connection);
+    if (!Server::is_serial(connection)) { // a printer cannot tell who holds the other end of a serial line
+        model_.disconnected(connection);
+    }
     if (server_.connections() == 0) {
         wait_for_idleness();
     }

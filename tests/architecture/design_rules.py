@@ -14,7 +14,7 @@ MAY_USE = {
     "intake": {"base", "protocol", "spool"},
     "simulator": {"base", "protocol"},
     "config": {"base", "protocol", "feeder", "link"},
-    "printer": {"base", "protocol"},
+    "printer": {"base", "protocol", "link"},
     "daemon": {"base", "protocol", "feeder", "session", "link", "printer", "spool", "intake", "config"},
     "api": {"base", "protocol", "link", "printer", "spool", "config", "daemon"},
     "service": {"base", "protocol", "feeder", "session", "link", "printer", "spool", "intake", "config", "daemon"},
@@ -32,7 +32,7 @@ ONLY_HEADERS = {
 # Files that touch the outside world within a folder that is otherwise pure, by name without extension.
 EDGES = {
     "base": {"asio", "assert"},
-    "simulator": {"client_session", "fleet", "hiccup_watch", "server", "simulator", "simulator_faults", "steady_instant", "sim_options", "sim_settings", "tape", "linefeed_sim_main"},
+    "simulator": {"client_session", "fleet", "hiccup_watch", "serial_line", "server", "simulator", "simulator_faults", "steady_instant", "sim_options", "sim_settings", "tape", "linefeed_sim_main"},
 }
 
 # No I/O, no clock, no random numbers, no thread: facts and time come in, what to do goes out.

@@ -79,7 +79,7 @@ private:
     void run_over();
     void die();
 
-    // What JobRun and TcpLink do
+    // What JobRun and PrinterLink do
     template <typename Fact>
     void call(Fact&& fact);
     void carry_out();

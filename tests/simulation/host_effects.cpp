@@ -1,5 +1,5 @@
-// What a session wants done, carried out in the order of link::TcpLink and daemon::JobRun; the process may die between
-// any two effects.
+// What a session wants done, carried out in the order of link::PrinterLink and daemon::JobRun; the process may die
+// between any two effects.
 #include "host_run.hpp"
 
 #include <sstream>

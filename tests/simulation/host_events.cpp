@@ -1,4 +1,4 @@
-// What happens to a run: connections, bytes, completions, time; carried out in the order of link::TcpLink and
+// What happens to a run: connections, bytes, completions, time; carried out in the order of link::PrinterLink and
 // daemon::JobRun.
 #include "host_run.hpp"
 

@@ -1,4 +1,4 @@
-// One run of the program on the printer: what daemon::JobRun and link::TcpLink hold.
+// One run of the program on the printer: what daemon::JobRun and link::PrinterLink hold.
 #pragma once
 
 #include "host.hpp"

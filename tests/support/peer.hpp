@@ -23,7 +23,7 @@ namespace linefeed::printer {
 inline ClientSettings client_of(std::uint16_t port) {
     ClientSettings settings;
     settings.address = "tcp://127.0.0.1:" + std::to_string(port);
-    settings.endpoints = {{boost::asio::ip::address_v4::loopback(), port}};
+    settings.endpoints.tcp = {{boost::asio::ip::address_v4::loopback(), port}};
     settings.reply_timeout = std::chrono::milliseconds{200};
     return settings;
 }

@@ -32,7 +32,7 @@ TEST(Environment, shouldGoBeforeTheFile) {
     EXPECT_EQ(settings.http.port, 81);
     EXPECT_EQ(settings.spool, "/e/b");
     EXPECT_EQ(settings.logging.level_of(LogComponent::store), LogLevel::debug);
-    EXPECT_EQ(settings.printers.front().address, (link::PrinterAddress{"other", 3001}));
+    EXPECT_EQ(settings.printers.front().address, (link::PrinterAddress{link::TcpAddress{"other", 3001}}));
     EXPECT_TRUE(settings.printers.front().queue.autostart);
     EXPECT_THAT(settings.http.hosts, ElementsAre("a.example", "b.example:80"));
 }

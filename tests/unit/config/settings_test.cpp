@@ -71,7 +71,7 @@ folders:
     EXPECT_EQ(layout.properties(),
               (protocol::RecordProperties{true, protocol::Orientation::degrees_180, std::nullopt}));
     const PrinterSettings& printer = *settings->printer("p");
-    EXPECT_EQ(printer.address, (link::PrinterAddress{"10.0.0.1", 3002}));
+    EXPECT_EQ(printer.address, (link::PrinterAddress{link::TcpAddress{"10.0.0.1", 3002}}));
     EXPECT_EQ(printer.job_file, "FFSDISK\\JOBS\\a.job");
     EXPECT_EQ(printer.pacing.poll_min, 400us);
     EXPECT_EQ(printer.reply_timeout, 500ms);

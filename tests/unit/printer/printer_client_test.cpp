@@ -103,7 +103,7 @@ TEST(PrinterClient, shouldSayWhyThereIsNoConnection) {
     EXPECT_EQ(refused.error().kind, FailureKind::unreachable);
     EXPECT_EQ(refused.error().message, settings.address + ": Connection refused");
 
-    settings.endpoints.clear();
+    settings.endpoints.tcp.clear();
     EXPECT_EQ(PrinterClient::connect(settings).error().message, settings.address + ": it has no address");
 }
 
@@ -129,7 +129,7 @@ TEST(PrinterClient, shouldGiveUpAConnectionThatIsNotTaken) {
 TEST(PrinterClient, shouldTryTheNextEndpoint) {
     Peer peer{[](std::string_view) { return Peer::Reaction{ready}; }};
     ClientSettings settings = peer.settings();
-    settings.endpoints.insert(settings.endpoints.begin(), {boost::asio::ip::address_v4::loopback(), 1});
+    settings.endpoints.tcp.insert(settings.endpoints.tcp.begin(), {boost::asio::ip::address_v4::loopback(), 1});
     const auto client = PrinterClient::connect(settings).value();
     EXPECT_TRUE(client->ask<protocol::MachineStatus>(Parameter::RS));
 }

@@ -1,6 +1,6 @@
 // The link between a session and a socket. The printer at the other end is a few lines of script in the same thread, so
 // that what has been written can be looked at in the middle of a batch of effects.
-#include "link/tcp_link.hpp"
+#include "link/printer_link.hpp"
 #include "protocol/messages.hpp"
 
 #include <boost/asio/ip/address.hpp>
@@ -19,9 +19,9 @@ constexpr std::uint32_t depth = 64;
 constexpr std::uint32_t records = 200;
 constexpr std::uint32_t block = 8; ///< few enough to be plausible at once
 
-class TcpLinkTest : public testing::Test, public EffectHandler {
+class PrinterLinkTest : public testing::Test, public EffectHandler {
 protected:
-    TcpLinkTest() {
+    PrinterLinkTest() {
         page_.first = RecordNumber{1};
         for (std::uint32_t number = 1; number <= records; ++number) {
             page_.frames += "^0=MR" + std::to_string(number) + "\tx\r";
@@ -44,7 +44,7 @@ protected:
     void on_progress(Instant) override {}
 
     void connect() {
-        link_.connect({acceptor_.local_endpoint()}, std::chrono::seconds{5});
+        link_.connect({.tcp = {acceptor_.local_endpoint()}}, std::chrono::seconds{5});
         acceptor_.accept(printer_);
         printer_.non_blocking(true);
     }
@@ -112,7 +112,7 @@ protected:
     tcp::acceptor acceptor_{context_, tcp::endpoint{boost::asio::ip::address_v4::loopback(), 0}};
     tcp::socket printer_{context_};
     session::Session session_{{}, {}};
-    TcpLink link_{context_, session_, *this};
+    PrinterLink link_{context_, session_, *this};
 
     RecordPage page_;
     bool grant_ = false;
@@ -128,7 +128,7 @@ protected:
     RecordNumber stop_at_;
 };
 
-TEST_F(TcpLinkTest, shouldRefillThePrinterBeforeAnybodyElseIsTold) {
+TEST_F(PrinterLinkTest, shouldRefillThePrinterBeforeAnybodyElseIsTold) {
     connect();
     while (!printing_ || mail_asked_ == 0 || received_ < depth) {
         ASSERT_FALSE(ended_);
@@ -147,7 +147,7 @@ TEST_F(TcpLinkTest, shouldRefillThePrinterBeforeAnybodyElseIsTold) {
 }
 
 /// None of them waits for the next answer or for a timer, however they come.
-TEST_F(TcpLinkTest, shouldRefillForAllAnswersThatComeTogether) {
+TEST_F(PrinterLinkTest, shouldRefillForAllAnswersThatComeTogether) {
     connect();
     while (!printing_ || mail_asked_ < 2 || received_ < depth) {
         ASSERT_FALSE(ended_);
@@ -168,7 +168,7 @@ TEST_F(TcpLinkTest, shouldRefillForAllAnswersThatComeTogether) {
     EXPECT_FALSE(ended_);
 }
 
-TEST_F(TcpLinkTest, shouldEndTheRunWhenThePrinterCloses) {
+TEST_F(PrinterLinkTest, shouldEndTheRunWhenThePrinterCloses) {
     connect();
     while (read().empty()) {
         step();
@@ -181,21 +181,21 @@ TEST_F(TcpLinkTest, shouldEndTheRunWhenThePrinterCloses) {
     EXPECT_EQ(unreachable_, "");
 }
 
-TEST_F(TcpLinkTest, shouldSayWhyThereIsNoConnection) {
+TEST_F(PrinterLinkTest, shouldSayWhyThereIsNoConnection) {
     const auto nobody = acceptor_.local_endpoint();
     acceptor_.close();
-    link_.connect({nobody}, std::chrono::seconds{5});
+    link_.connect({.tcp = {nobody}}, std::chrono::seconds{5});
     while (unreachable_.empty()) {
         step();
     }
     EXPECT_EQ(unreachable_, "Connection refused");
 }
 
-TEST_F(TcpLinkTest, shouldTryTheNextEndpoint) {
+TEST_F(PrinterLinkTest, shouldTryTheNextEndpoint) {
     tcp::acceptor closed{context_, tcp::endpoint{boost::asio::ip::address_v4::loopback(), 0}};
     const auto nobody = closed.local_endpoint();
     closed.close();
-    link_.connect({nobody, acceptor_.local_endpoint()}, std::chrono::seconds{5});
+    link_.connect({.tcp = {nobody, acceptor_.local_endpoint()}}, std::chrono::seconds{5});
     for (int i = 0; i < 100; ++i) {
         step();
     }

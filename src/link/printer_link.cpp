@@ -1,4 +1,6 @@
-#include "link/tcp_link.hpp"
+#include "link/printer_link.hpp"
+
+#include "link/serial_port.hpp"
 
 #include <boost/asio/bind_allocator.hpp>
 
@@ -20,75 +22,40 @@ bool has(const session::Effects& effects) {
 
 } // namespace
 
-TcpLink::TcpLink(asio::io_context& context, session::Session& session, EffectHandler& handler)
-    : socket_(context)
+PrinterLink::PrinterLink(asio::io_context& context, session::Session& session, EffectHandler& handler)
+    : dialer_(context)
+    , channel_(context)
     , timer_(context)
+    , drain_timer_(context)
     , session_(session)
     , handler_(handler) {}
 
-Instant TcpLink::now() {
+Instant PrinterLink::now() {
     return Instant{std::chrono::duration_cast<Duration>(std::chrono::steady_clock::now().time_since_epoch())};
 }
 
-void TcpLink::connect(std::vector<asio::ip::tcp::endpoint> endpoints, Duration timeout) {
-    endpoints_ = std::move(endpoints);
-    connect_timeout_ = timeout;
-    try_next_endpoint();
-}
-
-void TcpLink::try_next_endpoint() {
-    if (endpoint_ == endpoints_.size()) {
-        handler_.on_unreachable(last_error_);
-        return;
+void PrinterLink::connect(Endpoints endpoints, Duration timeout) {
+    if (endpoints.serial) {
+        byte_time_ = std::chrono::duration_cast<Duration>(
+            std::chrono::duration<double>{1.0 / bytes_per_second(*endpoints.serial)});
     }
-    error_code ignored;
-    socket_.close(ignored);
-    const std::size_t attempt = endpoint_++;
-    timer_.expires_after(connect_timeout_);
-    timer_.async_wait([this, attempt](const error_code& error) {
-        if (!error && !open_ && attempt + 1 == endpoint_) {
-            error_code close_error;
-            socket_.close(close_error);
-            last_error_ =
-                "no connection within " +
-                std::to_string(std::chrono::duration_cast<std::chrono::milliseconds>(connect_timeout_).count()) + " ms";
+    dialer_.dial(std::move(endpoints), timeout, [this](Channel channel, const std::string& reason) {
+        if (channel.is_open()) {
+            connected(std::move(channel));
+        } else {
+            handler_.on_unreachable(reason);
         }
-    });
-    socket_.async_connect(endpoints_[attempt], [this](const error_code& error) {
-        timer_.cancel();
-        if (given_up_) {
-            return;
-        }
-        if (!error && socket_.is_open()) {
-            connected();
-            return;
-        }
-        if (error != asio::error::operation_aborted) {
-            last_error_ = error.message();
-        }
-        try_next_endpoint();
     });
 }
 
-void TcpLink::connected() {
+void PrinterLink::connected(Channel channel) {
+    channel_ = std::move(channel);
     open_ = true;
-    error_code error;
-    socket_.set_option(asio::ip::tcp::no_delay{true}, error);
-    if (!error) {
-        socket_.set_option(asio::socket_base::keep_alive{true}, error);
-    }
-    if (!error) {
-        socket_.non_blocking(true, error);
-    }
-    if (error) {
-        broken();
-        return;
-    }
     read();
     call([](session::Session& session, Instant at, session::Effects& effects) { session.on_connected(at, effects); });
 }
 
-void TcpLink::read() {
+void PrinterLink::read() {
     auto handler = [this](const error_code& error, std::size_t bytes) {
         if (!open_) {
             return;
@@ -104,10 +71,10 @@ void TcpLink::read() {
             read();
         }
     };
-    socket_.async_read_some(asio::buffer(received_), asio::bind_allocator(HandlerAllocator<>{memory_}, handler));
+    channel_.async_read_some(asio::buffer(received_), asio::bind_allocator(HandlerAllocator<>{memory_}, handler));
 }
 
-void TcpLink::carry_out(session::Effects& effects) {
+void PrinterLink::carry_out(session::Effects& effects) {
     while (!effects.empty()) {
         // The printer first: nothing else is as urgent, and nothing else waits for the write to be done.
         const bool written = has<session::Write>(effects) && open_ && write();
@@ -129,7 +96,7 @@ void TcpLink::carry_out(session::Effects& effects) {
     }
 }
 
-bool TcpLink::write() {
+bool PrinterLink::write() {
     const session::WritePieces pieces = session_.pieces();
     write_next_ = 0;
     write_end_ = 0;
@@ -139,11 +106,11 @@ bool TcpLink::write() {
     return continue_write();
 }
 
-bool TcpLink::continue_write() {
+bool PrinterLink::continue_write() {
     while (write_next_ < write_end_) {
         error_code error;
         std::size_t written =
-            socket_.write_some(std::span{write_buffers_}.subspan(write_next_, write_end_ - write_next_), error);
+            channel_.write_some(std::span{write_buffers_}.subspan(write_next_, write_end_ - write_next_), error);
         if (error == asio::error::would_block || error == asio::error::try_again) {
             wait_until_writable();
             return false;
@@ -161,50 +128,51 @@ bool TcpLink::continue_write() {
             }
         }
     }
-    return true;
+    return gone_out();
 }
 
-void TcpLink::wait_until_writable() {
-    auto handler = [this](const error_code& error) {
-        if (!open_ || error) {
-            return;
-        }
-        if (continue_write()) {
-            call([](session::Session& session, Instant at, session::Effects& effects) {
-                session.on_written(at, effects);
-            });
-        }
-    };
-    socket_.async_wait(asio::ip::tcp::socket::wait_write, asio::bind_allocator(HandlerAllocator<>{memory_}, handler));
+void PrinterLink::wait_until_writable() {
+    auto handler = [this](const error_code& error) { write_on(error); };
+    channel_.async_wait_writable(asio::bind_allocator(HandlerAllocator<>{memory_}, handler));
 }
 
-void TcpLink::broken() {
+bool PrinterLink::gone_out() {
+    const int waiting = channel_.bytes_waiting();
+    if (waiting == 0) {
+        return true;
+    }
+    constexpr Duration look_at_least = std::chrono::milliseconds{1};
+    drain_timer_.expires_after(std::max(look_at_least, waiting * byte_time_));
+    auto handler = [this](const error_code& error) { write_on(error); };
+    drain_timer_.async_wait(asio::bind_allocator(HandlerAllocator<>{memory_}, handler));
+    return false;
+}
+
+void PrinterLink::write_on(const error_code& error) {
+    if (open_ && !error && continue_write()) {
+        call([](session::Session& session, Instant at, session::Effects& effects) { session.on_written(at, effects); });
+    }
+}
+
+void PrinterLink::broken() {
     close();
     call([](session::Session& session, Instant at, session::Effects& effects) { session.on_closed(at, effects); });
 }
 
-void TcpLink::close() {
+void PrinterLink::close() {
     open_ = false;
-    error_code ignored;
-    given_up_ = true;
-    // Closing with unread bytes resets the connection, which could cost the printer our last command: shut down and
-    // read them first.
-    socket_.shutdown(asio::ip::tcp::socket::shutdown_send, ignored);
-    constexpr int reads_at_most = 16;
-    for (int i = 0; i < reads_at_most && !ignored; ++i) {
-        static_cast<void>(socket_.read_some(asio::buffer(received_), ignored));
-    }
-    socket_.close(ignored);
+    channel_.hang_up();
     timer_.cancel();
+    drain_timer_.cancel();
     armed_.reset();
 }
 
-void TcpLink::abort() {
-    given_up_ = true;
+void PrinterLink::abort() {
+    dialer_.cancel();
     close();
 }
 
-void TcpLink::arm_timer() {
+void PrinterLink::arm_timer() {
     const auto wake = session_.next_wake();
     if (!open_ || !wake || (armed_ && *armed_ <= *wake)) {
         return; // an earlier wake-up will look again

@@ -1,19 +1,19 @@
-// Carries out a session's effects over TCP: reads, one gather write at a time, and one timer. TCP_NODELAY, since Nagle
-// and delayed acknowledgements cost up to 40 ms. Decides nothing.
+// Carries out a session's effects over TCP or a serial line: reads, one gather write at a time, and one timer. Decides
+// nothing.
 #pragma once
 
 #include "base/time.hpp"
+#include "link/dialer.hpp"
 #include "link/handler_memory.hpp"
 #include "session/session.hpp"
 
 #include <boost/asio/io_context.hpp>
-#include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/steady_timer.hpp>
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <string>
-#include <vector>
 
 namespace linefeed::link {
 
@@ -31,12 +31,12 @@ public:
 };
 
 /// Flow: connect(), then call() whenever the session has to be told something. Lives on one thread, that of `context`.
-class TcpLink {
+class PrinterLink {
 public:
-    TcpLink(boost::asio::io_context& context, session::Session& session, EffectHandler& handler);
+    PrinterLink(boost::asio::io_context& context, session::Session& session, EffectHandler& handler);
 
-    /// Tries the endpoints in turn, each for at most `timeout`.
-    void connect(std::vector<boost::asio::ip::tcp::endpoint> endpoints, Duration timeout);
+    /// Tries TCP endpoints in turn, each for at most `timeout`; opens a serial line.
+    void connect(Endpoints endpoints, Duration timeout);
 
     /// Tells the session something: `fact(session, now, effects)`, and carries out what follows.
     template <typename Fact>
@@ -54,8 +54,7 @@ public:
 
 private:
     [[nodiscard]] static Instant now();
-    void try_next_endpoint();
-    void connected();
+    void connected(Channel channel);
     void read();
     void carry_out(session::Effects& effects);
     /// Begins to write what the session has. True when the write is complete.
@@ -63,22 +62,23 @@ private:
     /// Writes as much as the socket takes. True when the write is complete.
     [[nodiscard]] bool continue_write();
     void wait_until_writable();
+    void write_on(const boost::system::error_code& error);
+    /// The kernel has all of the write. True when it has gone out, as far as anybody can tell.
+    [[nodiscard]] bool gone_out();
     void broken();
     void close();
     void arm_timer();
 
     std::shared_ptr<HandlerMemory> memory_ = std::make_shared<HandlerMemory>();
-    boost::asio::ip::tcp::socket socket_;
+    Dialer dialer_;
+    Channel channel_;
     boost::asio::steady_timer timer_;
+    boost::asio::steady_timer drain_timer_; ///< looks whether a serial line has sent what it was given
     session::Session& session_;
     EffectHandler& handler_;
 
-    std::vector<boost::asio::ip::tcp::endpoint> endpoints_;
-    std::size_t endpoint_ = 0;
-    Duration connect_timeout_{};
-    std::string last_error_;
+    Duration byte_time_{}; ///< of a serial line
     bool open_ = false;
-    bool given_up_ = false; ///< closed for good, also while connecting
 
     static constexpr std::size_t receive_bytes = 16 * 1024;
     std::array<char, receive_bytes> received_{};
