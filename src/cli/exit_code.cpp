@@ -50,6 +50,7 @@ ExitCode exit_code(const feeder::Outcome& outcome) {
     case OutcomeCode::impossible_report:
     case OutcomeCode::printer_restarted:
     case OutcomeCode::ran_dry:
+    case OutcomeCode::line_noise:
         return ExitCode::stopped;
     case OutcomeCode::storage_failed:
         return outcome.issued ? ExitCode::stopped : ExitCode::other;

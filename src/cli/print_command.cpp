@@ -4,6 +4,7 @@
 #include "cli/print_flow.hpp"
 #include "cli/print_report.hpp"
 #include "cli/printer_profile.hpp"
+#include "daemon/line_use.hpp"
 #include "daemon/record_text.hpp"
 #include "daemon/wall_clock.hpp"
 
@@ -59,9 +60,11 @@ Result<ExitCode> PrintCommand::run(const std::filesystem::path& spool_path, cons
         return endpoints.error();
     }
     daemon::JobRunSettings settings = run_settings();
-    settings.printer = printer;
-    settings.endpoints = *endpoints;
     settings.session.charsets = daemon::record_format(job_).charsets;
+    daemon::use_line(settings, printer, *endpoints, daemon::record_bytes(job_));
+    if (const std::string words = daemon::line_words(printer, daemon::record_bytes(job_)); !words.empty()) {
+        view_.message(words);
+    }
     auto code = print(*spool, settings);
     import_.reset(); // before the spool
     return code;

@@ -3,6 +3,7 @@
 #include "cli/operator_name.hpp"
 #include "cli/print_flow.hpp"
 #include "cli/print_report.hpp"
+#include "daemon/line_use.hpp"
 #include "daemon/other_jobs.hpp"
 
 #include <iostream>
@@ -94,6 +95,7 @@ Result<bool> PrintCommand::settle_doubt(spool::Spool& spool) {
 /// One run after the other until nothing is left to print, or something stands in the way.
 Result<feeder::Outcome> PrintCommand::print_runs(spool::Spool& spool, const daemon::JobRunSettings& settings) {
     feeder::Outcome outcome{.code = feeder::OutcomeCode::nothing_to_print};
+    daemon::NoisePatience patience;
     while (!interrupted_) {
         if (const auto ready = import_first_records(spool); !ready) {
             return interrupted_ ? Result<feeder::Outcome>{outcome} : ready.error();
@@ -132,7 +134,11 @@ Result<feeder::Outcome> PrintCommand::print_runs(spool::Spool& spool, const daem
         const bool doubt_to_settle = outcome.code == feeder::OutcomeCode::records_in_doubt && !outcome.issued;
         // The earlier run may have printed all that is imported so far.
         const bool more_to_come = outcome.code == feeder::OutcomeCode::nothing_to_print && end_open();
-        if (outcome.code != feeder::OutcomeCode::finished && !doubt_to_settle && !more_to_come) {
+        const bool noise_only = patience.goes_on(run);
+        if (noise_only) {
+            view_.message(feeder::describe(outcome) + "; going on");
+        }
+        if (outcome.code != feeder::OutcomeCode::finished && !doubt_to_settle && !more_to_come && !noise_only) {
             return outcome;
         }
     }

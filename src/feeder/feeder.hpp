@@ -48,6 +48,9 @@ struct FeederSettings {
     Duration stop_timeout = std::chrono::seconds{10};
     Duration finish_timeout = std::chrono::seconds{2}; ///< for the print in progress, and for `!EQ` to be seen
     Duration nozzle_timeout = std::chrono::seconds{120};
+    /// Records of the first fill, and of one refill, at most: what a slow line carries in a moment.
+    RecordCount fill_at_most = first_fill_at_most;
+    RecordCount refill_at_most = RecordCount{UINT32_MAX};
 };
 
 /// What is known before the printer is asked.
@@ -100,6 +103,9 @@ public:
     /// An inquiry got no answer, though the printer answers others. `?RS` and `?SM` are asked again where their answer
     /// is waited for; the rest is evidence that is missing then.
     void on_lost_answer(protocol::Parameter what, Instant now, Actions& out);
+    /// This record, the last that went out, may lie in the FIFO with a damaged text: it must not be printed. What was
+    /// to be sent behind it is not sent.
+    void on_unproven_record(RecordNumber number, Instant now, Actions& out);
     /// The printer answers nothing at all.
     void on_silence(Actions& out);
     void on_link_lost(Actions& out);
@@ -256,6 +262,7 @@ private:
     void clearing_status(Instant now, Actions& out);
     void judge_finally(Instant now, Actions& out);
     void settle(const Verdict& verdict, const Evidence& evidence, Instant now, Actions& out);
+    [[nodiscard]] Verdict verdict_on(const OpenRun& run, const Evidence& evidence) const;
 
     FeederSettings settings_;
     FeederPlan plan_;
@@ -327,6 +334,7 @@ private:
     bool restarted_ = false;                 ///< stopped and started again at the printer, as records were on their way
     bool nobody_knows_ = false;              ///< at the look before the flush, which records are printed
     bool fed_by_another_ = false;            ///< by what was reported while it printed
+    std::optional<RecordNumber> unproven_;   ///< on_unproven_record()
     RecordNumber broken_off_;                ///< a print that was not finished when the printer stood; 0 = none
     bool memory_lost_ = false;               ///< the reported number went back
     std::optional<Instant> all_printed_at_;

@@ -46,6 +46,19 @@ Evidence Feeder::evidence() const {
             .broken_off = broken_off_};
 }
 
+/// A record that is unproven is not surely printed: a product may carry a damaged text.
+Verdict Feeder::verdict_on(const OpenRun& run, const Evidence& seen) const {
+    Verdict verdict = reconcile(run, seen);
+    if (unproven_ && verdict.printed.contains(*unproven_)) {
+        const RecordNumber last = verdict.in_doubt.empty() ? verdict.printed.last() : verdict.in_doubt.last();
+        verdict.in_doubt = RecordRange::closed(*unproven_, last);
+        verdict.printed = verdict.printed.first() == *unproven_
+                              ? RecordRange{}
+                              : RecordRange::closed(verdict.printed.first(), unproven_->previous());
+    }
+    return verdict;
+}
+
 /// The printer stands and has been asked. Final when nothing of the run can be in its FIFO.
 void Feeder::judge(Instant now, Actions& out) {
     if (has_granted_records()) {
@@ -53,7 +66,7 @@ void Feeder::judge(Instant now, Actions& out) {
     }
     const Evidence seen = evidence();
     const OpenRun run = open_run();
-    const Verdict verdict = reconcile(run, seen);
+    const Verdict verdict = verdict_on(run, seen);
     const bool all_printed = verdict.in_doubt.empty() && verdict.unused.empty();
     if (all_printed || is_another_printer(run, facts_)) {
         settle(verdict, seen, now, out);
@@ -114,7 +127,7 @@ void Feeder::judge_finally(Instant now, Actions& out) {
     }
     // Started between the looks, with an empty FIFO but for what had arrived since the stop.
     seen.restarted = seen.restarted || seen.mail.last_printed != first_look_.mail.last_printed;
-    settle(reconcile(open_run(), seen), seen, now, out);
+    settle(verdict_on(open_run(), seen), seen, now, out);
 }
 
 /// The final verdict goes to the ledger, and the run ends or begins.

@@ -237,6 +237,9 @@ std::uint64_t Feeder::prints_through(RecordNumber number) const {
 }
 
 void Feeder::confirm(RecordNumber through, Actions& out) {
+    if (unproven_) {
+        through = std::min(through, unproven_->previous());
+    }
     if (through > confirmed_through_) {
         confirmed_through_ = through;
         out.push_back(ConfirmPrinted{through, mail_});
@@ -341,9 +344,10 @@ void Feeder::refill_now(Actions& out) {
     if (const auto intent = refill_.next_intent()) {
         out.push_back(AskIntent{*intent});
     }
+    const RecordCount most = phase_ == Phase::verifying ? settings_.fill_at_most : settings_.refill_at_most;
     const bool rest = refill_.sent_through() + refill_.ready() == refill_.range().last();
     if (rest || Pacing::worth_sending(refill_.ready(), refill_.level(), refill_.depth())) {
-        if (const RecordRange range = refill_.take(); !range.empty()) {
+        if (const RecordRange range = refill_.take(most); !range.empty()) {
             any_sent_ = true;
             out.push_back(SendRecords{range});
         }

@@ -45,6 +45,12 @@ void Feeder::request_stop(Instant now, Actions& out) {
     begin_stop(OutcomeCode::stop_requested, now, out);
 }
 
+/// Stopped at once, it lies behind all that is still printed, unless the FIFO was all but empty.
+void Feeder::on_unproven_record(RecordNumber number, Instant now, Actions& out) {
+    unproven_ = number;
+    begin_stop(OutcomeCode::line_noise, now, out);
+}
+
 void Feeder::begin_stop(OutcomeCode cause, Instant now, Actions& out) {
     switch (phase_) {
     case Phase::taking_over:

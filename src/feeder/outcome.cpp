@@ -48,6 +48,8 @@ std::string_view to_string(OutcomeCode code) {
         return "ran_dry";
     case OutcomeCode::storage_failed:
         return "storage_failed";
+    case OutcomeCode::line_noise:
+        return "line_noise";
     }
     assertion_failed("OutcomeCode", __FILE__, __LINE__);
 }
@@ -137,6 +139,9 @@ std::string describe(const Outcome& outcome) {
         return "the printer ran empty, because the records were read more slowly than the line prints them";
     case OutcomeCode::storage_failed:
         return "the print ledger could not be written: the line is stopped";
+    case OutcomeCode::line_noise:
+        return "the line to the printer is disturbed: a record may have arrived damaged, so the printer was stopped "
+               "before it; look at cable, shield and adapter";
     }
     assertion_failed("OutcomeCode", __FILE__, __LINE__);
 }

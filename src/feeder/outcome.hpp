@@ -33,6 +33,7 @@ enum class OutcomeCode {
     records_in_doubt,   ///< nobody knows whether some records were printed
     ran_dry,            ///< the printer ran empty: records were not at hand in time
     storage_failed,     ///< the ledger cannot be written
+    line_noise,         ///< a record may have reached the printer damaged: the line was stopped before it was printed
 };
 
 /// The end of a run.

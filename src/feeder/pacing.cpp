@@ -5,12 +5,13 @@
 namespace linefeed::feeder {
 
 Pacing::Pacing(const PacingSettings& settings)
-    : settings_(settings) {
+    : settings_(settings)
+    , inquiries_at_most_(std::min(first_inquiries, settings.most_inquiries)) {
     LINEFEED_ASSERT(Duration{0} < settings.poll_least && settings.poll_least <= settings.poll_min);
     LINEFEED_ASSERT(settings.poll_min <= settings.poll_max);
     LINEFEED_ASSERT(settings.burst_rate > 0 && settings.polls_per_buffer > 0);
     LINEFEED_ASSERT(0 < settings.polls_per_filling && settings.polls_per_filling <= settings.polls_per_filling_max);
-    LINEFEED_ASSERT(settings.missing_share > 0);
+    LINEFEED_ASSERT(settings.missing_share > 0 && settings.most_inquiries > 0);
 }
 
 void Pacing::restart(Instant now, RecordCount printed) {
@@ -79,11 +80,12 @@ void Pacing::answered_after(Duration round_trip, int under_way) {
     shortest_round_trip_ = std::min(shortest_round_trip_, round_trip);
     shortest_of_late_ = std::min(shortest_of_late_, round_trip);
     if (under_way >= inquiries_at_most_ && round_trip <= shortest_round_trip_ + shortest_round_trip_ / 4 + noise) {
-        inquiries_at_most_ = std::min(inquiries_at_most_ + 1, max_inquiries);
+        inquiries_at_most_ = std::min(inquiries_at_most_ + 1, settings_.most_inquiries);
     }
     if (++answers_since_judged_ == answers_judged) {
         if (shortest_of_late_ > 2 * shortest_round_trip_ + 2 * noise) {
-            inquiries_at_most_ = std::max(inquiries_at_most_ / 2, least_inquiries); // they queue
+            inquiries_at_most_ =
+                std::max(inquiries_at_most_ / 2, std::min(least_inquiries, settings_.most_inquiries)); // they queue
         }
         answers_since_judged_ = 0;
         shortest_before_ = shortest_of_late_;
@@ -96,7 +98,7 @@ void Pacing::answered_after(Duration round_trip, int under_way) {
 void Pacing::pair_answered_after(Duration first, Duration second) {
     constexpr Duration noise = std::chrono::milliseconds{2};
     if (second - first > std::max(first / 2, noise)) {
-        inquiries_at_most_ = least_inquiries;
+        inquiries_at_most_ = std::min(least_inquiries, settings_.most_inquiries);
     }
 }
 

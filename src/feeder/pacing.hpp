@@ -17,7 +17,10 @@
 
 namespace linefeed::feeder {
 
-/// Precondition: 0 < poll_least ≤ poll_min ≤ poll_max; rates and polls above 0.
+/// Inquiries under way at once, at most, whatever the way.
+inline constexpr int max_inquiries = 32;
+
+/// Precondition: 0 < poll_least ≤ poll_min ≤ poll_max; rates, polls and inquiries above 0.
 struct PacingSettings {
     Duration poll_min = std::chrono::milliseconds{1};
     /// Even more often when the measured rate demands it, and while nothing is known of the rate after a start.
@@ -33,6 +36,7 @@ struct PacingSettings {
     /// Polls in the time in which the line prints as much as is in the printer: if answers are quick, and at most.
     double polls_per_filling = 64.0;
     double polls_per_filling_max = 256.0;
+    int most_inquiries = max_inquiries; ///< under way at once, at most
     /// A record must lie in the FIFO so long before its PrintGo (protocol, section 5).
     Duration lead = std::chrono::milliseconds{3};
 };
@@ -41,8 +45,6 @@ struct PacingSettings {
 /// answer.
 class Pacing {
 public:
-    static constexpr int max_inquiries = 32; ///< under way at once, at most
-
     explicit Pacing(const PacingSettings& settings);
 
     /// `printed` records in all have been printed already.
@@ -87,7 +89,7 @@ private:
     Duration shortest_of_late_{Duration::max()}; ///< of the answers that are judged next
     Duration shortest_before_{Duration::max()};  ///< of those that were judged last
     int answers_since_judged_ = 0;
-    int inquiries_at_most_ = first_inquiries;
+    int inquiries_at_most_;
     std::array<Sample, samples_kept> samples_{};
     std::size_t oldest_ = 0;
     std::size_t size_ = 0;

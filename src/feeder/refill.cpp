@@ -68,8 +68,8 @@ bool Refill::starved() const {
     return bound() <= sent_through_ && !all_sent();
 }
 
-RecordRange Refill::take() {
-    const RecordCount count = ready();
+RecordRange Refill::take(RecordCount most) {
+    const RecordCount count = std::min(ready(), most);
     if (count == RecordCount{0}) {
         return {};
     }

@@ -37,8 +37,8 @@ public:
     /// sent, or the report goes back.
     [[nodiscard]] bool printed(RecordNumber through);
 
-    /// The records to send now, at most the credit; the caller sends them. Empty if nothing may go.
-    [[nodiscard]] RecordRange take();
+    /// The records to send now, at most the credit and at most so many; the caller sends them. Empty if nothing may go.
+    [[nodiscard]] RecordRange take(RecordCount most = RecordCount{UINT32_MAX});
     /// How many records take() would give.
     [[nodiscard]] RecordCount ready() const;
     /// The whole FIFO (at most first_fill_at_most), or the whole rest of the run, is at hand and durable.

@@ -5,6 +5,7 @@
 #include "config/settings.hpp"
 #include "daemon/job_facts.hpp"
 #include "daemon/job_run.hpp"
+#include "daemon/line_use.hpp"
 #include "daemon/operations.hpp"
 #include "daemon/other_jobs.hpp"
 #include "daemon/preflight.hpp"
@@ -46,8 +47,9 @@ struct LineServices {
 struct Ending {
     spool::JobId job{};
     feeder::Outcome outcome;
-    std::string words; ///< why, and what to do
-    bool said = false; ///< all is in the words: those of the outcome are not needed
+    std::string words;       ///< why, and what to do
+    bool said = false;       ///< all is in the words: those of the outcome are not needed
+    bool noise_only = false; ///< the next run may go on at once (daemon::NoisePatience)
 };
 
 enum class StartedBy { person, itself };
@@ -147,7 +149,7 @@ private:
     [[nodiscard]] Result<daemon::JobRunSettings> run_settings(const spool::Job& job);
     [[nodiscard]] Result<std::optional<Ending>> check_printer(const spool::Job& job, bool may_be_printing);
     [[nodiscard]] Ending run(const JobFacts& facts, RecordRange wanted, const std::optional<daemon::OpenIssue>& open,
-                             const daemon::JobRunSettings& settings);
+                             const daemon::JobRunSettings& settings, daemon::NoisePatience& patience);
     void watch(daemon::JobRun& run, spool::JobId job);
     void take_notice(const feeder::Notice& notice, spool::JobId job);
     void conclude(const Ending& ending);

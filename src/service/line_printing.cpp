@@ -71,8 +71,6 @@ Result<daemon::JobRunSettings> Line::run_settings(const spool::Job& job) {
         return endpoints.error();
     }
     daemon::JobRunSettings settings;
-    settings.printer = own.address;
-    settings.endpoints = *endpoints;
     settings.connect_timeout = own.connect_timeout;
     settings.meters = &meters_;
     settings.frames = &frames_;
@@ -83,6 +81,7 @@ Result<daemon::JobRunSettings> Line::run_settings(const spool::Job& job) {
     settings.session.feeder.open_nozzle = own.open_nozzle;
     settings.session.feeder.acknowledge = all->acknowledged(own);
     settings.session.feeder.stop_on = all->stopping(own);
+    daemon::use_line(settings, own.address, *endpoints, daemon::record_bytes(job));
     return settings;
 }
 
@@ -107,6 +106,11 @@ Result<Ending> Line::print_runs(spool::JobId job) {
         return hindered ? Result<Ending>{std::move(**hindered)} : hindered.error();
     }
     Ending ending{job, {.code = OutcomeCode::nothing_to_print, .issued = false}, {}};
+    daemon::NoisePatience patience;
+    if (const std::string words = daemon::line_words(settings->printer, daemon::record_bytes(before->facts.job));
+        !words.empty()) {
+        event(event_kind::printer_notice, job, words);
+    }
     while (true) {
         before = look(services_.access, job);
         if (!before) {
@@ -128,9 +132,9 @@ Result<Ending> Line::print_runs(spool::JobId job) {
                 return ending;
             }
         }
-        ending = run(before->facts, wanted_records(*before), before->open, *settings);
+        ending = run(before->facts, wanted_records(*before), before->open, *settings, patience);
         const bool goes_on =
-            ending.outcome.code == OutcomeCode::finished ||
+            ending.noise_only || ending.outcome.code == OutcomeCode::finished ||
             (ending.outcome.code == OutcomeCode::records_in_doubt && !ending.outcome.issued) ||
             (ending.outcome.code == OutcomeCode::nothing_to_print && before->open); // the earlier run printed all
         if (!goes_on) {
@@ -223,7 +227,7 @@ Result<std::optional<Ending>> Line::check_printer(const spool::Job& job, bool ma
 }
 
 Ending Line::run(const JobFacts& facts, RecordRange wanted, const std::optional<OpenIssue>& open,
-                 const daemon::JobRunSettings& settings) {
+                 const daemon::JobRunSettings& settings, daemon::NoisePatience& patience) {
     JobRun run{services_.threads, services_.spool, facts.job, wanted, open, settings};
     {
         const std::lock_guard lock{mutex_};
@@ -232,7 +236,12 @@ Ending Line::run(const JobFacts& facts, RecordRange wanted, const std::optional<
     run.start();
     watch(run, facts.job.id);
     run.join();
-    return {facts.job.id, run.outcome(), run.detail()};
+    Ending ending{facts.job.id, run.outcome(), run.detail()};
+    ending.noise_only = patience.goes_on(run);
+    if (ending.noise_only) {
+        event(event_kind::printer_warning, facts.job.id, feeder::describe(ending.outcome) + "; going on");
+    }
+    return ending;
 }
 
 /// Until the run is finished. A stop that was asked for before it reaches it as well.

@@ -34,6 +34,15 @@ PageWindow::Staged PageWindow::stage(RecordRange range, Outbox& outbox) const {
     assertion_failed("the records to send are at hand", __FILE__, __LINE__);
 }
 
+std::string_view PageWindow::frame_of(RecordNumber number) const {
+    for (std::size_t i = 0; i < size_; ++i) {
+        if (at(i).range().contains(number)) {
+            return at(i).slice({number, RecordCount{1}});
+        }
+    }
+    assertion_failed("the record to send is at hand", __FILE__, __LINE__);
+}
+
 const RecordPage* PageWindow::take_done(RecordNumber sent_through) {
     return !empty() && at(0).range().last() <= sent_through ? take_any() : nullptr;
 }

@@ -28,6 +28,8 @@ public:
     };
     /// Stages the frames of `range`, all of which must be here.
     Staged stage(RecordRange range, Outbox& outbox) const;
+    /// The frame of a record that is here.
+    [[nodiscard]] std::string_view frame_of(RecordNumber number) const;
     /// The oldest page, if every record of it is at or below `sent_through`; it leaves the window.
     [[nodiscard]] const RecordPage* take_done(RecordNumber sent_through);
     /// The oldest page, whatever its state; nullptr if none is left.

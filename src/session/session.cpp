@@ -12,7 +12,8 @@ Session::Session(const SessionSettings& settings, const feeder::FeederPlan& plan
     : settings_(settings)
     , observer_(observer)
     , feeder_(settings.feeder, plan)
-    , decoder_(settings.escapes) {}
+    , decoder_(settings.escapes)
+    , secured_(settings.line) {}
 
 void Session::on_connected(Instant now, Effects& out) {
     LINEFEED_ASSERT(!connected_ && !closed_);
@@ -25,17 +26,17 @@ void Session::on_connected(Instant now, Effects& out) {
 }
 
 void Session::on_received(std::string_view bytes, Instant now, Effects& out) {
-    while (!closed_ && !end_) {
+    while (!closed_ && (!end_ || settings_.line.crc)) {
         const protocol::DecodeResult result = decoder_.next(bytes);
         if (std::holds_alternative<std::monostate>(result)) {
             return;
         }
-        if (const auto* error = std::get_if<protocol::FrameError>(&result)) {
-            take_damage(error->bytes, now);
-            continue;
-        }
         Actions actions;
-        take_frame(std::get<protocol::Frame>(result), now, actions);
+        if (const auto* error = std::get_if<protocol::FrameError>(&result)) {
+            take_damage(error->bytes, now, actions);
+        } else {
+            take_frame(std::get<protocol::Frame>(result), now, actions);
+        }
         carry_out(actions, now, out);
     }
 }
@@ -61,10 +62,13 @@ bool may_be_answer(const protocol::Frame& frame) {
 
 } // namespace
 
-void Session::take_damage(std::uint64_t bytes, Instant now) {
+void Session::take_damage(std::uint64_t bytes, Instant now, Actions& actions) {
     statistics_.bytes_damaged += bytes;
     if (observer_ != nullptr) {
         observer_->on_damage_received(bytes, now);
+    }
+    if (settings_.line.crc && bytes == damaged_ok_bytes) {
+        settle_frame(secured_.on_right(), now, actions);
     }
 }
 
@@ -74,6 +78,14 @@ void Session::take_frame(const protocol::Frame& frame, Instant now, Actions& act
     }
     ++statistics_.frames_received;
     heard_at_ = now;
+    if (settings_.line.crc) {
+        take_secured(frame, now, actions);
+    } else {
+        take_unsecured(frame, now, actions);
+    }
+}
+
+void Session::take_unsecured(const protocol::Frame& frame, Instant now, Actions& actions) {
     if (!may_be_answer(frame)) {
         ++statistics_.frames_unexpected;
         return;
@@ -151,7 +163,7 @@ void Session::forget_mail_before_status(Instant now, Actions& actions) {
 /// Only `?RS` and `?SM` must be answered.
 void Session::time_out(Parameter what, Instant now, Actions& actions) {
     const bool needed = what == Parameter::RS || what == Parameter::SM;
-    if (needed && now - heard_at_ >= settings_.reply_timeout) {
+    if (needed && now - std::max(heard_at_, line_free_at_) >= settings_.reply_timeout) {
         feeder_.on_silence(actions);
     } else {
         feeder_.on_lost_answer(what, now, actions);
@@ -169,7 +181,7 @@ void Session::on_written(Instant now, Effects& out) {
         records_under_way_.reset();
     }
     release_pages(out);
-    flush(out);
+    flush(now, out);
     finish_if_drained(out);
 }
 
@@ -179,6 +191,7 @@ void Session::on_closed(Instant now, Effects& out) {
     }
     connected_ = false;
     outbox_.clear();
+    secured_.clear();
     inquiries_.clear();
     Actions actions;
     feeder_.on_link_lost(actions);
@@ -245,14 +258,18 @@ void Session::request_stop(Instant now, Effects& out) {
 }
 
 void Session::on_time(Instant now, Effects& out) {
+    Actions actions;
+    settle_frame(secured_.on_time(now), now, actions);
     if (end_) {
         if (!closed_ && now >= farewell_deadline_) {
             outbox_.clear();
-            finish_if_drained(out);
+            secured_.clear();
         }
+        flush(now, out);
+        finish_if_drained(out);
         return;
     }
-    Actions actions;
+    carry_out(actions, now, out);
     for (std::size_t i = 0; i < inquiries_.size() && !end_;) {
         if (now < inquiries_[i].deadline) {
             ++i;
@@ -282,12 +299,17 @@ std::optional<Instant> Session::next_wake() const {
     if (closed_) {
         return std::nullopt;
     }
+    std::optional<Instant> first = secured_.deadline();
+    const auto consider = [&first](std::optional<Instant> wake) {
+        first = first && wake ? std::min(first, wake) : (first ? first : wake);
+    };
     if (end_) {
-        return farewell_deadline_;
+        consider(farewell_deadline_);
+        return first;
     }
-    const auto deadline = first_deadline();
-    const auto wake = feeder_.next_wake();
-    return deadline && wake ? std::min(deadline, wake) : (deadline ? deadline : wake);
+    consider(first_deadline());
+    consider(feeder_.next_wake());
+    return first;
 }
 
 } // namespace linefeed::session

@@ -11,9 +11,11 @@
 #include "session/frame_observer.hpp"
 #include "session/outbox.hpp"
 #include "session/page_window.hpp"
+#include "session/secured_line.hpp"
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
@@ -55,6 +57,7 @@ struct SessionSettings {
     std::vector<protocol::Charset> charsets{protocol::Charset::latin1};
     /// An inquiry unanswered for this long is lost; a printer from which nothing came for as long is silent.
     Duration reply_timeout = std::chrono::seconds{2};
+    LineSettings line;
     /// How long the last commands (`!ST`, `!EQ`) may take to be written before the link is closed all the same.
     Duration farewell_timeout = std::chrono::seconds{1};
 };
@@ -105,9 +108,18 @@ private:
         Instant deadline{};
     };
     static constexpr std::size_t max_inquiries = 64;
+    /// `^0!OK`, when damage has left no frame of it.
+    static constexpr std::size_t damaged_ok_bytes = 5;
 
-    void take_damage(std::uint64_t bytes, Instant now);
+    void take_damage(std::uint64_t bytes, Instant now, feeder::Actions& actions);
     void take_frame(const protocol::Frame& frame, Instant now, feeder::Actions& actions);
+    void take_unsecured(const protocol::Frame& frame, Instant now, feeder::Actions& actions);
+    // session_secured.cpp: with CRC32
+    void take_secured(const protocol::Frame& frame, Instant now, feeder::Actions& actions);
+    void take_proven(const protocol::Frame& frame, Instant now, feeder::Actions& actions);
+    void settle_frame(SecuredLine::Step step, Instant now, feeder::Actions& actions);
+    void begin_frame(Instant now);
+    void send_announced(Instant now);
     [[nodiscard]] bool take_answer(const protocol::Message& message, Instant now, feeder::Actions& actions);
     /// Removes the oldest inquiry for `what`; false if there was none.
     [[nodiscard]] bool answered(protocol::Parameter what);
@@ -115,9 +127,15 @@ private:
     void time_out(protocol::Parameter what, Instant now, feeder::Actions& actions);
     void carry_out(const feeder::Actions& actions, Instant now, Effects& out);
     void carry_out(const feeder::Action& action, Instant now, Effects& out);
-    void stage(RecordRange records, Instant now);
-    void staged_command(Instant now);
-    void flush(Effects& out);
+    void send_command(SecuredLine::Kind kind, Instant now, protocol::Parameter what = protocol::Parameter::SM);
+    void send_records(RecordRange records, Instant now);
+    void stage_records(RecordRange records, Instant now);
+    void stage_command(std::string_view bytes, Instant now);
+    void note_records(RecordRange records, Instant now);
+    void note_sent(std::size_t bytes, Instant now);
+    [[nodiscard]] RecordNumber staged_through() const;
+    [[nodiscard]] bool drained() const;
+    void flush(Instant now, Effects& out);
     void finish_if_drained(Effects& out);
     void release_pages(Effects& out);
     [[nodiscard]] std::optional<Instant> first_deadline() const;
@@ -127,7 +145,11 @@ private:
     feeder::Feeder feeder_;
     protocol::FrameDecoder decoder_;
     Outbox outbox_;
+    std::string command_; ///< the one that is being made
     PageWindow pages_;
+    SecuredLine secured_;
+    std::optional<std::uint32_t> announced_crc_;      ///< of the next frame from the printer
+    Instant line_free_at_{};                          ///< all that was sent has gone over the line by then
     std::optional<RecordsWritten> staged_records_;    ///< in the outbox, for the next write
     std::optional<RecordsWritten> records_under_way_; ///< with the write under way
     BoundedList<Inquiry, max_inquiries> inquiries_;

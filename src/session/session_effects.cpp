@@ -2,6 +2,7 @@
 #include "protocol/frame_encoder.hpp"
 #include "session/session.hpp"
 
+#include <algorithm>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -28,7 +29,7 @@ void Session::carry_out(const Actions& actions, Instant now, Effects& out) {
     for (const feeder::Action& action : actions) {
         carry_out(action, now, out);
     }
-    flush(out);
+    flush(now, out);
     finish_if_drained(out);
 }
 
@@ -40,23 +41,26 @@ void Session::carry_out(const feeder::Action& action, Instant now, Effects& out)
 
         void operator()(std::monostate) const {}
         void operator()(const feeder::Inquire& inquire) const {
-            session.inquiries_.push_back({inquire.what, now + session.settings_.reply_timeout});
-            protocol::append_inquiry(session.outbox_.command_text(), inquire.what);
-            session.staged_command(now);
+            protocol::append_inquiry(session.command_, inquire.what);
+            session.send_command(SecuredLine::Kind::inquiry, now, inquire.what);
         }
         void operator()(const feeder::Command& command) const {
-            protocol::append_action(session.outbox_.command_text(), command.what);
-            session.staged_command(now);
+            if (command.what == protocol::Action::stop_print) {
+                session.secured_.drop_records();
+            }
+            // Never a blind `!EQ`: repeated, it could meet an error that nobody has seen.
+            const bool once = command.what == protocol::Action::acknowledge_errors;
+            protocol::append_action(session.command_, command.what);
+            session.send_command(once ? SecuredLine::Kind::once : SecuredLine::Kind::command, now);
         }
         void operator()(const feeder::SetStopAt& stop) const {
-            protocol::append_message(session.outbox_.command_text(), protocol::StopAt{stop.number});
-            session.staged_command(now);
+            protocol::append_message(session.command_, protocol::StopAt{stop.number});
+            session.send_command(SecuredLine::Kind::command, now);
         }
-        void operator()(const feeder::SendRecords& send) const { session.stage(send.range, now); }
+        void operator()(const feeder::SendRecords& send) const { session.send_records(send.range, now); }
         void operator()(const feeder::SendEndMarker& marker) const {
-            append_end_marker(session.outbox_.command_text(), marker.number, session.settings_.charsets,
-                              session.settings_.escapes);
-            session.staged_command(now);
+            append_end_marker(session.command_, marker.number, session.settings_.charsets, session.settings_.escapes);
+            session.send_command(SecuredLine::Kind::once, now);
         }
         void operator()(const feeder::Settle& settle) const { out.push_back(settle); }
         void operator()(const feeder::BeginRun& begin) const { out.push_back(begin); }
@@ -72,18 +76,45 @@ void Session::carry_out(const feeder::Action& action, Instant now, Effects& out)
     std::visit(Visitor{*this, now, out}, action);
 }
 
-void Session::staged_command(Instant now) {
+void Session::send_command(SecuredLine::Kind kind, Instant now, protocol::Parameter what) {
+    if (settings_.line.crc) {
+        secured_.add({.kind = kind, .what = what, .bytes = command_});
+    } else {
+        stage_command(command_, now);
+        if (kind == SecuredLine::Kind::inquiry) {
+            inquiries_.push_back({what, line_free_at_ + settings_.reply_timeout});
+        }
+    }
+    command_.clear();
+}
+
+void Session::send_records(RecordRange records, Instant now) {
+    if (settings_.line.crc) {
+        secured_.add_records(records);
+    } else {
+        stage_records(records, now);
+    }
+}
+
+void Session::stage_command(std::string_view bytes, Instant now) {
+    outbox_.command_text() += bytes;
     const std::string_view command = outbox_.staged_command();
+    note_sent(command.size(), now);
     if (observer_ != nullptr) {
         observer_->on_command_sent(command, now);
     }
 }
 
-void Session::stage(RecordRange records, Instant now) {
+void Session::stage_records(RecordRange records, Instant now) {
     const PageWindow::Staged staged = pages_.stage(records, outbox_);
+    note_sent(staged.bytes, now);
+    note_records(records, now);
     if (observer_ != nullptr) {
         observer_->on_records_sent(records, staged.first, staged.bytes, now);
     }
+}
+
+void Session::note_records(RecordRange records, Instant now) {
     if (staged_records_) {
         staged_records_->records = RecordRange::closed(staged_records_->records.first(), records.last());
     } else {
@@ -91,15 +122,34 @@ void Session::stage(RecordRange records, Instant now) {
     }
 }
 
-void Session::flush(Effects& out) {
-    if (connected_ && outbox_.begin_write()) {
+void Session::note_sent(std::size_t bytes, Instant now) {
+    line_free_at_ = std::max(line_free_at_, now) + settings_.line.time_of(bytes);
+}
+
+void Session::flush(Instant now, Effects& out) {
+    if (!connected_) {
+        return;
+    }
+    begin_frame(now);
+    if (outbox_.begin_write()) {
         records_under_way_ = std::exchange(staged_records_, std::nullopt);
         out.push_back(Write{});
     }
 }
 
+/// Nothing more has to go out.
+bool Session::drained() const {
+    return outbox_.idle() && secured_.idle();
+}
+
+/// Records up to this one need their page no more once the outbox is idle.
+RecordNumber Session::staged_through() const {
+    const auto waiting = secured_.first_waiting();
+    return waiting ? waiting->previous() : feeder_.refill().sent_through();
+}
+
 void Session::finish_if_drained(Effects& out) {
-    if (!end_ || closed_ || !outbox_.idle()) {
+    if (!end_ || closed_ || !drained()) {
         return;
     }
     closed_ = true;
@@ -119,7 +169,7 @@ void Session::release_pages(Effects& out) {
     if (!outbox_.idle() || feeder_.refill().range().empty()) {
         return; // staged slices point into the pages
     }
-    while (const RecordPage* page = pages_.take_done(feeder_.refill().sent_through())) {
+    while (const RecordPage* page = pages_.take_done(staged_through())) {
         out.push_back(ReleasePage{page});
     }
 }

@@ -22,7 +22,7 @@ struct Case {
     double answers_missing;
 };
 
-constexpr std::array<Case, 4> cases{{{AnswerHabit::on_the_way, "on the way", 1.0 + 1.0 / Pacing::max_inquiries},
+constexpr std::array<Case, 4> cases{{{AnswerHabit::on_the_way, "on the way", 1.0 + 1.0 / max_inquiries},
                                      {AnswerHabit::one_by_one, "one by one", 4.0},
                                      {AnswerHabit::in_a_cycle, "in a cycle", 1.0},
                                      {AnswerHabit::one_per_cycle, "one per cycle", 4.0}}};

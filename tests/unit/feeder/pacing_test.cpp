@@ -174,7 +174,7 @@ TEST(Pacing, shouldHaveManyInquiriesUnderWayWhenItIsTheWayThatTakesTheTime) {
     Pacing pacing{PacingSettings{}};
     EXPECT_EQ(pacing.inquiries_at_most(), 16) << "nothing is known of the printer yet";
     answer(pacing, 100, milliseconds{20});
-    EXPECT_EQ(pacing.inquiries_at_most(), Pacing::max_inquiries);
+    EXPECT_EQ(pacing.inquiries_at_most(), max_inquiries);
 }
 
 TEST(Pacing, shouldNotAllowMoreInquiriesThanAreOfUse) {
@@ -218,10 +218,10 @@ TEST(Pacing, shouldNotLetInquiriesQueueInAPrinterThatTakesOneAfterTheOther) {
 TEST(Pacing, shouldForgiveAFewLateAnswers) {
     Pacing pacing = steady(1000, milliseconds{5});
     answer(pacing, 7, milliseconds{100}); // this machine stood still
-    EXPECT_EQ(pacing.inquiries_at_most(), Pacing::max_inquiries);
+    EXPECT_EQ(pacing.inquiries_at_most(), max_inquiries);
     answer(pacing, 1, milliseconds{5});
     answer(pacing, 16, milliseconds{100});
-    EXPECT_LT(pacing.inquiries_at_most(), Pacing::max_inquiries) << "that is more than chance";
+    EXPECT_LT(pacing.inquiries_at_most(), max_inquiries) << "that is more than chance";
 }
 
 TEST(Pacing, shouldPollFastWhileNothingIsKnownOfTheRate) {

@@ -1,0 +1,57 @@
+#include "daemon/line_use.hpp"
+
+#include "link/serial_port.hpp"
+#include "session/line_fit.hpp"
+
+#include <cmath>
+#include <utility>
+
+namespace linefeed::daemon {
+
+namespace {
+
+session::LineSettings line_of(const link::PrinterAddress& printer) {
+    const link::SerialAddress* const serial = printer.serial();
+    return {.bytes_per_second = serial == nullptr ? 0.0 : link::bytes_per_second(*serial), .crc = printer.crc};
+}
+
+} // namespace
+
+std::size_t record_bytes(const spool::Job& job) {
+    constexpr std::size_t usual = 40;
+    const std::uint64_t records = job.records.count().value();
+    return records == 0 || job.frame_bytes == 0 ? usual : static_cast<std::size_t>(job.frame_bytes / records);
+}
+
+void use_line(JobRunSettings& settings, const link::PrinterAddress& printer, link::Endpoints endpoints,
+              std::size_t record_bytes) {
+    settings.printer = printer;
+    settings.endpoints = std::move(endpoints);
+    settings.session.line = line_of(printer);
+    session::fit_to_line(settings.session, record_bytes);
+}
+
+std::string line_words(const link::PrinterAddress& printer, std::size_t record_bytes) {
+    const link::SerialAddress* const serial = printer.serial();
+    if (serial == nullptr) {
+        return {};
+    }
+    // A fifth is left to inquiries and their answers.
+    const double rate = 0.8 * session::records_per_second(line_of(printer), record_bytes);
+    const std::string least = rate < 1 ? "less than 1" : std::to_string(static_cast<int>(std::floor(rate)));
+    return "the serial line carries about " + least + " records a second (" + std::to_string(serial->baud) +
+           " baud, records of " + std::to_string(record_bytes) + " bytes, " +
+           (printer.crc ? "secured by CRC32" : "not secured") + "): at more the printer runs dry and stops" +
+           (printer.crc ? ""
+                        : ". Without crc=on in the address nobody notices a letter that the line has changed on its "
+                          "way into a record");
+}
+
+bool NoisePatience::goes_on(const JobRun& run) {
+    const RunProgress progress = run.progress();
+    const bool printed = !progress.range.empty() && progress.printed_through >= progress.range.first();
+    fruitless_ = printed ? 0 : fruitless_ + 1;
+    return run.outcome().code == feeder::OutcomeCode::line_noise && fruitless_ < runs_without_print;
+}
+
+} // namespace linefeed::daemon

@@ -1,0 +1,130 @@
+// Secured transmission (protocol, section 6, CRC32): every frame is announced by its checksum, and the next goes out
+// only when the printer has said of this one that it is right. One frame at a time, since the FIFO takes no record
+// later than the one behind it.
+//
+// What the printer refuses is repeated. What it says nothing about may have arrived, may have been lost, or may have
+// been taken without a check because the announcement was lost. An inquiry or a command can be repeated all the same,
+// once it is certain that no answer to the first is still on its way: an inquiry of another kind is put in between, and
+// answers keep their order. A record cannot: it may lie in the FIFO with a damaged text. It is unproven, and must not
+// be printed.
+#pragma once
+
+#include "base/bounded_list.hpp"
+#include "base/record_number.hpp"
+#include "base/time.hpp"
+#include "protocol/commands.hpp"
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace linefeed::session {
+
+/// What the line between host and printer is like.
+struct LineSettings {
+    double bytes_per_second = 0; ///< each way; 0 = so many that they need no counting
+    bool crc = false;            ///< frames are secured
+
+    /// How long so many bytes take.
+    [[nodiscard]] Duration time_of(std::size_t bytes) const;
+};
+
+/// Flow: add…() in the order in which it shall go out; begin() gives the next frame when the one before is settled;
+/// then one on_…() for each fact, and on_time() at deadline().
+class SecuredLine {
+    static constexpr int max_tries = 8;                                  ///< of one frame
+    static constexpr int max_syncs = 5;                                  ///< in a row, unanswered
+    static constexpr Duration patience = std::chrono::milliseconds{300}; ///< besides the time on the line
+    static constexpr std::size_t answer_bytes = 128;                     ///< with its announcement
+    static constexpr std::size_t max_frames = 64;                        ///< waiting
+
+public:
+    /// What becomes of a frame about which the printer says nothing.
+    enum class Kind {
+        inquiry, ///< repeated: its answer is what proves it
+        command, ///< repeated: doing it twice does no harm
+        once,    ///< never repeated: twice would be something else than once
+        record,  ///< unproven
+    };
+    struct Frame {
+        Kind kind = Kind::command;
+        protocol::Parameter what = protocol::Parameter::SM; ///< of an inquiry
+        RecordNumber number{};                              ///< of the record that is under way
+        RecordRange records{};                              ///< that have not begun
+        std::string bytes{};                                ///< from `^` to CR
+    };
+    /// What a fact leads to.
+    enum class Step {
+        wait,     ///< nothing yet
+        next,     ///< the frame is settled: begin()
+        send,     ///< announced() has to go out (once more)
+        lost,     ///< the inquiry current() was not answered: begin()
+        unproven, ///< the record current() may lie in the FIFO with a damaged text: begin()
+    };
+
+    explicit SecuredLine(const LineSettings& line)
+        : line_(line) {}
+    /// How long one frame may take on a bad line, besides the bytes.
+    [[nodiscard]] static constexpr Duration repeats_take() { return max_syncs * patience; }
+
+    void add(Frame frame);
+    void add_records(RecordRange records) { add({.kind = Kind::record, .records = records}); }
+    /// Records that have not begun will not: the line is being stopped.
+    void drop_records();
+    /// The first record that has not begun; absent = none waits.
+    [[nodiscard]] std::optional<RecordNumber> first_waiting() const;
+
+    /// A frame is under way.
+    [[nodiscard]] bool busy() const { return state_ != State::idle; }
+    [[nodiscard]] bool idle() const { return !busy() && size_ == 0; }
+    /// Begins with the next frame and gives it; absent = none waits, or one is under way. A record comes without bytes:
+    /// set_record() gives them.
+    [[nodiscard]] const Frame* begin();
+    void set_record(std::string_view bytes) { current_.bytes = bytes; }
+    /// The frame of begin().
+    [[nodiscard]] const Frame& current() const { return current_; }
+    /// What to write now: the announcement and its frame. The wait for the printer's word begins.
+    [[nodiscard]] std::string_view announced(Instant now);
+
+    /// `!OK`.
+    [[nodiscard]] Step on_right();
+    /// `=FC`.
+    [[nodiscard]] Step on_refused();
+    /// An answer to the inquiry `what`, which was secured and right.
+    [[nodiscard]] Step on_answer(protocol::Parameter what);
+    /// A command or record came back (`!EM`), from `^` up to and without the CR.
+    void on_echo(std::string_view frame);
+    [[nodiscard]] Step on_time(Instant now);
+    [[nodiscard]] std::optional<Instant> deadline() const;
+    /// The connection is gone, or nothing more is wanted.
+    void clear();
+
+private:
+    enum class State : std::uint8_t {
+        idle,
+        sent,    ///< waits for `!OK`, and an inquiry for its answer
+        syncing, ///< the printer's silence is over when it answers this other inquiry
+    };
+    [[nodiscard]] bool is(protocol::Parameter what) const;
+    [[nodiscard]] Step settled(Step step);
+    [[nodiscard]] Step sync();
+
+    LineSettings line_;
+    [[nodiscard]] Frame& waiting(std::size_t place) { return frames_[(oldest_ + place) % max_frames]; }
+
+    std::array<Frame, max_frames> frames_{}; ///< ring
+    std::size_t oldest_ = 0;
+    std::size_t size_ = 0;
+    Frame current_;
+    std::string announced_;
+    State state_ = State::idle;
+    Instant deadline_{};
+    int tries_ = 0;
+    int syncs_ = 0;
+    std::size_t sync_ = 0; ///< which inquiry
+    bool echoed_ = false;
+};
+
+} // namespace linefeed::session

@@ -1,0 +1,113 @@
+// The conversation with CRC32, both ways (protocol, section 6): what the printer says of our frames, and which of its
+// own are right.
+#include "protocol/crc32.hpp"
+#include "session/session.hpp"
+
+#include <functional>
+#include <numeric>
+#include <utility>
+
+namespace linefeed::session {
+
+using feeder::Actions;
+using protocol::Group;
+using protocol::Parameter;
+
+namespace {
+
+bool is_parameter(const protocol::Frame& frame, Parameter what) {
+    return frame.group == Group::parameter && frame.payload.starts_with(protocol::code(what));
+}
+
+/// `^0!OK`, also with one byte damaged: of a frame that it did not check the printer says nothing, and `=FC` is longer.
+/// Taken for right wrongly, a refused record is missing, and the printer stops at the gap.
+bool is_right(std::string_view raw) {
+    constexpr std::string_view right = "^0!OK";
+    const auto differing = [&] {
+        return std::inner_product(raw.begin(), raw.end(), right.begin(), 0, std::plus<>{}, std::not_equal_to<>{});
+    };
+    return raw.size() == right.size() && differing() <= 1;
+}
+
+} // namespace
+
+void Session::take_secured(const protocol::Frame& frame, Instant now, Actions& actions) {
+    if (is_parameter(frame, Parameter::NR)) {
+        const protocol::Message message = protocol::parse_message(frame, settings_.escapes);
+        const auto* const next = std::get_if<protocol::NextCrc>(&message);
+        announced_crc_ = next == nullptr ? std::nullopt : std::optional{next->crc};
+        return;
+    }
+    const auto announced = std::exchange(announced_crc_, std::nullopt);
+    if (is_right(frame.raw)) {
+        settle_frame(secured_.on_right(), now, actions);
+    } else if (is_parameter(frame, Parameter::FC)) {
+        settle_frame(secured_.on_refused(), now, actions);
+    } else if (announced && *announced == protocol::crc32(frame.raw)) {
+        take_proven(frame, now, actions);
+    } else {
+        secured_.on_echo(frame.raw);
+        ++statistics_.frames_unexpected;
+    }
+}
+
+/// An answer is the feeder's only if it belongs to the inquiry that is under way.
+void Session::take_proven(const protocol::Frame& frame, Instant now, Actions& actions) {
+    secured_.on_echo(frame.raw);
+    const auto what = protocol::parameter_from_code(frame.payload.substr(0, 2));
+    const SecuredLine::Step step = what ? secured_.on_answer(*what) : SecuredLine::Step::wait;
+    if (step == SecuredLine::Step::next && !end_) {
+        take_unsecured(frame, now, actions);
+        if (answered(*what)) { // it cannot be read
+            time_out(*what, now, actions);
+        }
+    }
+    settle_frame(step, now, actions);
+}
+
+void Session::settle_frame(SecuredLine::Step step, Instant now, Actions& actions) {
+    switch (step) {
+    case SecuredLine::Step::wait:
+    case SecuredLine::Step::next: // flush() begins with it
+        return;
+    case SecuredLine::Step::send:
+        send_announced(now);
+        return;
+    case SecuredLine::Step::lost:
+        if (answered(secured_.current().what) && !end_) {
+            time_out(secured_.current().what, now, actions);
+        }
+        return;
+    case SecuredLine::Step::unproven:
+        secured_.drop_records();
+        if (!end_) {
+            feeder_.on_unproven_record(secured_.current().number, now, actions);
+        }
+        return;
+    }
+}
+
+void Session::begin_frame(Instant now) {
+    const SecuredLine::Frame* const frame = secured_.begin();
+    if (frame == nullptr) {
+        return;
+    }
+    if (frame->kind == SecuredLine::Kind::record) {
+        const std::string_view bytes = pages_.frame_of(frame->number);
+        secured_.set_record(bytes);
+        const RecordRange record{frame->number, RecordCount{1}};
+        note_records(record, now);
+        if (observer_ != nullptr) {
+            observer_->on_records_sent(record, bytes, bytes.size(), now);
+        }
+    } else if (frame->kind == SecuredLine::Kind::inquiry) {
+        inquiries_.push_back({frame->what, Instant::max()}); // the secured line keeps the time
+    }
+    send_announced(now);
+}
+
+void Session::send_announced(Instant now) {
+    stage_command(secured_.announced(now), now);
+}
+
+} // namespace linefeed::session
