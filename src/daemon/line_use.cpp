@@ -3,6 +3,7 @@
 #include "link/serial_port.hpp"
 #include "session/line_fit.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -47,10 +48,19 @@ std::string line_words(const link::PrinterAddress& printer, std::size_t record_b
                           "way into a record");
 }
 
-bool NoisePatience::goes_on(const JobRun& run) {
+bool NoisePatience::goes_on(const JobRun& run, JobRunSettings& settings) {
     const RunProgress progress = run.progress();
     const bool printed = !progress.range.empty() && progress.printed_through >= progress.range.first();
     fruitless_ = printed ? 0 : fruitless_ + 1;
+    // So long the printer may print on without having understood anything, until the stop reaches it: an unproven
+    // record must lie behind that.
+    constexpr double seconds = 2.0;
+    constexpr std::uint64_t least = 16;
+    rate_per_s_ = std::max(rate_per_s_, progress.rate_per_s);
+    const auto needed = std::max(least, static_cast<std::uint64_t>(rate_per_s_ * seconds));
+    const std::uint64_t so_far = std::min<std::uint64_t>(settings.session.feeder.level_at_most.value(),
+                                                         std::max<std::uint64_t>(progress.fifo_depth, least));
+    settings.session.feeder.level_at_most = RecordCount{std::max(needed, so_far / 2)};
     return run.outcome().code == feeder::OutcomeCode::line_noise && fruitless_ < runs_without_print;
 }
 

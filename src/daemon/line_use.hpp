@@ -23,16 +23,19 @@ void use_line(JobRunSettings& settings, const link::PrinterAddress& printer, lin
 [[nodiscard]] std::string line_words(const link::PrinterAddress& printer, std::size_t record_bytes);
 
 /// A run that ended because of noise is gone on with at once, since nobody has stopped the line but linefeed itself;
-/// but not for ever if nothing gets printed. Flow: goes_on() after every run.
+/// but not for ever if nothing gets printed. On a bad line little is kept in the FIFO: every record behind the one that
+/// is unproven has to be sent again. Flow: goes_on() after every run.
 class NoisePatience {
 public:
-    static constexpr int runs_without_print = 10; ///< in a row, at most
+    static constexpr int runs_without_print = 50; ///< in a row, at most
 
-    /// True if the run ended because of noise and the next may go on where it stopped.
-    [[nodiscard]] bool goes_on(const JobRun& run);
+    /// True if the run ended because of noise and the next, with the settings as they are changed, may go on where it
+    /// stopped.
+    [[nodiscard]] bool goes_on(const JobRun& run, JobRunSettings& settings);
 
 private:
     int fruitless_ = 0;
+    double rate_per_s_ = 0; ///< the highest so far
 };
 
 } // namespace linefeed::daemon

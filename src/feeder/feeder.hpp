@@ -51,6 +51,8 @@ struct FeederSettings {
     /// Records of the first fill, and of one refill, at most: what a slow line carries in a moment.
     RecordCount fill_at_most = first_fill_at_most;
     RecordCount refill_at_most = RecordCount{UINT32_MAX};
+    /// Records in the printer at most, however deep its FIFO: what a stop throws away has to be sent again.
+    RecordCount level_at_most = RecordCount{UINT32_MAX};
 };
 
 /// What is known before the printer is asked.

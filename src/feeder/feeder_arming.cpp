@@ -142,7 +142,7 @@ void Feeder::on_granted(RecordRange range, RecordNumber durable_through, Instant
         taken_over(range, durable_through, now, out);
         return;
     }
-    refill_.begin(range, RecordCount{mail_.depth});
+    refill_.begin(range, std::min(RecordCount{mail_.depth}, settings_.level_at_most));
     refill_.durable(durable_through);
     confirmed_through_ = reported_through_ = range.first().previous();
     total_before_ = facts_.total_prints;

@@ -96,6 +96,7 @@ Result<Rerun> say_again(PrinterClient& printer, const std::vector<SpokenFrame>& 
         return whole.error();
     }
     Rerun rerun;
+    printer.set_secured(false); // what was secured then brings its checksum along
     std::int64_t before_ns = frames.empty() ? 0 : frames.front().time_ns;
     for (std::size_t i = 0; i < frames.size(); ++i) {
         if (!frames[i].sent) {

@@ -1,5 +1,6 @@
 #include "printer/printer_client.hpp"
 
+#include "link/serial_port.hpp"
 #include "protocol/frame_encoder.hpp"
 
 #include <boost/asio/buffer.hpp>
@@ -15,7 +16,8 @@ using protocol::Message;
 
 PrinterClient::PrinterClient(const ClientSettings& settings)
     : settings_(settings)
-    , decoder_(settings.escapes) {}
+    , decoder_(settings.escapes)
+    , secured_(settings.endpoints.crc) {}
 
 /// The last command may still be on its way out of a serial port.
 PrinterClient::~PrinterClient() {
@@ -47,7 +49,11 @@ Result<std::unique_ptr<PrinterClient>> PrinterClient::connect(const ClientSettin
 bool PrinterClient::send(protocol::Action action) {
     std::string bytes;
     protocol::append_action(bytes, action);
-    return write(bytes);
+    return deliver(bytes);
+}
+
+bool PrinterClient::deliver(const std::string& frame) {
+    return secured_ ? exchange(frame, nullptr, settings_.reply_timeout) : write(frame);
 }
 
 std::string PrinterClient::frame_of(const Message& message) const {
@@ -61,16 +67,32 @@ bool PrinterClient::converse(const std::string& bytes, const Listener& listener)
 }
 
 bool PrinterClient::converse(const std::string& bytes, const Listener& listener, Duration reply_timeout) {
-    if (!bytes.empty() && !write(bytes)) {
-        return false;
+    if (!secured_ || bytes.empty()) {
+        return (bytes.empty() || write(bytes)) && listen(listener, reply_timeout);
     }
+    std::string_view left{bytes};
+    while (true) {
+        const std::string_view frame = left.substr(0, left.find('\r') + 1);
+        left.remove_prefix(frame.size());
+        if (left.empty()) {
+            return exchange(frame, &listener, reply_timeout);
+        }
+        if (!exchange(frame, nullptr, reply_timeout)) {
+            return false;
+        }
+    }
+}
+
+bool PrinterClient::listen(const Listener& listener, Duration reply_timeout) {
     auto deadline = Clock::now() + reply_timeout;
     while (open_ && Clock::now() < deadline) {
         bool prolonged = false;
-        if (hear(read(deadline), listener, prolonged)) {
+        const std::string_view bytes = read(deadline);
+        if (hear(bytes, listener, prolonged)) {
             return true;
         }
-        if (prolonged) {
+        // On a serial line a long frame takes longer than any time-out.
+        if (prolonged || (settings_.endpoints.serial && !bytes.empty())) {
             deadline = Clock::now() + reply_timeout;
         }
     }
@@ -85,7 +107,9 @@ bool PrinterClient::hear(std::string_view bytes, const Listener& listener, bool&
             oddities_.damaged_bytes += damage->bytes;
         } else if (const auto* const frame = std::get_if<protocol::Frame>(&result)) {
             const Message message = message_of(*frame);
-            const Heard heard = done ? Heard::ignored : listener(message, frame->raw);
+            const bool heeded = !done && (!secured_ || is_for_listener(*frame, message));
+            const Heard heard = heeded ? listener(message, frame->raw) : Heard::ignored;
+            answered_ = answered_ || heard != Heard::ignored;
             done = done || heard == Heard::done;
             prolonged = prolonged || heard == Heard::more;
         }
@@ -102,7 +126,7 @@ bool PrinterClient::write(const std::string& bytes) {
     asio::async_write(channel_, asio::buffer(bytes),
                       [&result](const error_code& error, std::size_t) { result = error; });
     context_.restart();
-    context_.run_for(settings_.reply_timeout);
+    context_.run_for(settings_.reply_timeout + time_on_line(bytes.size()));
     if (result) { // also where it takes no bytes at all
         channel_.hang_up();
         context_.restart();
@@ -110,6 +134,13 @@ bool PrinterClient::write(const std::string& bytes) {
         open_ = false;
     }
     return open_;
+}
+
+Duration PrinterClient::time_on_line(std::size_t bytes) const {
+    const auto& serial = settings_.endpoints.serial;
+    const std::chrono::duration<double> seconds{serial ? static_cast<double>(bytes) / link::bytes_per_second(*serial)
+                                                       : 0.0};
+    return std::chrono::duration_cast<Duration>(seconds);
 }
 
 /// Empty: nothing came, or the connection is closed.

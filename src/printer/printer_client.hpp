@@ -74,9 +74,12 @@ public:
                                    }));
         return answer;
     }
-    /// Hands a command to the kernel. False if the connection is broken.
+    /// Hands a command to the kernel. False if the connection is broken, or if the transmission is secured and the
+    /// printer does not say that it has arrived.
     bool send(protocol::Action action);
-    bool send(const protocol::Message& message) { return write(frame_of(message)); }
+    bool send(const protocol::Message& message) { return deliver(frame_of(message)); }
+    /// Whether frames are secured by CRC32 (protocol, section 6), both ways; as the address wants it, unless set.
+    void set_secured(bool secured) { secured_ = secured; }
     /// Sends `bytes`, which may be none, and listens until the listener is done. False: the reply time-out is over, or
     /// the connection broke; what was heard until then counts.
     bool converse(const std::string& bytes, const Listener& listener);
@@ -95,11 +98,18 @@ private:
     using Clock = std::chrono::steady_clock;
 
     explicit PrinterClient(const ClientSettings& settings);
+    [[nodiscard]] bool deliver(const std::string& frame);
+    [[nodiscard]] bool listen(const Listener& listener, Duration reply_timeout);
+    // printer_client_secured.cpp
+    [[nodiscard]] bool exchange(std::string_view frame, const Listener* listener, Duration reply_timeout);
+    [[nodiscard]] bool try_exchange(std::string_view frame, const Listener* listener, Duration reply_timeout);
+    [[nodiscard]] bool is_for_listener(const protocol::Frame& frame, const protocol::Message& message);
     [[nodiscard]] bool write(const std::string& bytes);
     [[nodiscard]] std::string_view read(Clock::time_point deadline);
     /// What stands in one read; true when the listener is done.
     [[nodiscard]] bool hear(std::string_view bytes, const Listener& listener, bool& prolonged);
     [[nodiscard]] protocol::Message message_of(const protocol::Frame& frame);
+    [[nodiscard]] Duration time_on_line(std::size_t bytes) const;
     void note_filling(std::string_view bytes);
 
     ClientSettings settings_;
@@ -107,6 +117,12 @@ private:
     link::Channel channel_{context_};
     protocol::FrameDecoder decoder_;
     ConversationOddities oddities_;
+    /// What the printer said of the frame that was announced by its CRC32.
+    enum class Word { none, right, refused };
+    bool secured_;
+    Word word_ = Word::none;
+    std::optional<std::uint32_t> announced_crc_; ///< of the next frame from the printer
+    bool answered_ = false;                      ///< the listener has heard something since the frame went out
     Observer observer_ = [](bool, std::string_view) {};
     bool open_ = false;
     char last_byte_ = '\0';

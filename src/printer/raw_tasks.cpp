@@ -115,6 +115,7 @@ Result<Json> send(PrinterClient& printer, const Order& order) {
         const std::uint32_t crc = protocol::crc32(std::string_view{bytes}.substr(0, bytes.size() - 1));
         bytes.insert(0, printer.frame_of(protocol::NextCrc{crc}));
     }
+    printer.set_secured(false); // all that comes is shown, as it is
     constexpr std::uint64_t default_quiet_ms = 500;
     const std::chrono::milliseconds quiet{order.arguments.number("quiet_ms").value_or(default_quiet_ms)};
     const auto heard = gather(printer, bytes, quiet);

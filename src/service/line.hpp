@@ -149,7 +149,7 @@ private:
     [[nodiscard]] Result<daemon::JobRunSettings> run_settings(const spool::Job& job);
     [[nodiscard]] Result<std::optional<Ending>> check_printer(const spool::Job& job, bool may_be_printing);
     [[nodiscard]] Ending run(const JobFacts& facts, RecordRange wanted, const std::optional<daemon::OpenIssue>& open,
-                             const daemon::JobRunSettings& settings, daemon::NoisePatience& patience);
+                             daemon::JobRunSettings& settings, daemon::NoisePatience& patience);
     void watch(daemon::JobRun& run, spool::JobId job);
     void take_notice(const feeder::Notice& notice, spool::JobId job);
     void conclude(const Ending& ending);

@@ -91,7 +91,7 @@ Result<Ending> Line::print_runs(spool::JobId job) {
     if (!before) {
         return before.error();
     }
-    const auto settings = run_settings(before->facts.job);
+    auto settings = run_settings(before->facts.job);
     if (!settings) {
         return settings.error();
     }
@@ -227,7 +227,7 @@ Result<std::optional<Ending>> Line::check_printer(const spool::Job& job, bool ma
 }
 
 Ending Line::run(const JobFacts& facts, RecordRange wanted, const std::optional<OpenIssue>& open,
-                 const daemon::JobRunSettings& settings, daemon::NoisePatience& patience) {
+                 daemon::JobRunSettings& settings, daemon::NoisePatience& patience) {
     JobRun run{services_.threads, services_.spool, facts.job, wanted, open, settings};
     {
         const std::lock_guard lock{mutex_};
@@ -237,7 +237,7 @@ Ending Line::run(const JobFacts& facts, RecordRange wanted, const std::optional<
     watch(run, facts.job.id);
     run.join();
     Ending ending{facts.job.id, run.outcome(), run.detail()};
-    ending.noise_only = patience.goes_on(run);
+    ending.noise_only = patience.goes_on(run, settings);
     if (ending.noise_only) {
         event(event_kind::printer_warning, facts.job.id, feeder::describe(ending.outcome) + "; going on");
     }

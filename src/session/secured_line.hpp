@@ -36,7 +36,7 @@ struct LineSettings {
 class SecuredLine {
     static constexpr int max_tries = 8;                                  ///< of one frame
     static constexpr int max_syncs = 5;                                  ///< in a row, unanswered
-    static constexpr Duration patience = std::chrono::milliseconds{300}; ///< besides the time on the line
+    static constexpr Duration patience = std::chrono::milliseconds{200}; ///< besides the time on the line
     static constexpr std::size_t answer_bytes = 128;                     ///< with its announcement
     static constexpr std::size_t max_frames = 64;                        ///< waiting
 

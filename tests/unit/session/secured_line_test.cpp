@@ -1,0 +1,179 @@
+// One secured frame at a time: what the printer says of it, and what its silence means.
+#include "protocol/crc32.hpp"
+#include "session/secured_line.hpp"
+
+#include <gtest/gtest.h>
+
+namespace linefeed::session {
+namespace {
+
+using protocol::Parameter;
+using Step = SecuredLine::Step;
+using Kind = SecuredLine::Kind;
+using std::chrono::seconds;
+
+class SecuredLineTest : public testing::Test {
+protected:
+    /// Begins with the next frame and sends it.
+    std::string begin() {
+        const SecuredLine::Frame* const frame = line_.begin();
+        if (frame == nullptr) {
+            return "nothing";
+        }
+        if (frame->kind == Kind::record) {
+            line_.set_record("^0=MR" + std::to_string(frame->number.value()) + "\tx\r");
+        }
+        return send();
+    }
+    /// What is sent, without its announcement.
+    std::string send() {
+        const std::string_view bytes = line_.announced(now_);
+        const std::size_t end = bytes.find('\r');
+        const std::string_view frame = bytes.substr(end + 1);
+        EXPECT_EQ(bytes.substr(0, end), "^0=NR" + std::to_string(protocol::crc32(frame.substr(0, frame.size() - 1))));
+        return std::string{frame.substr(0, frame.size() - 1)};
+    }
+    Step silence() {
+        now_ += seconds{1};
+        return line_.on_time(now_);
+    }
+    void add(Kind kind, std::string bytes, Parameter what = Parameter::SM) {
+        line_.add({.kind = kind, .what = what, .bytes = std::move(bytes)});
+    }
+    void add_records(std::uint32_t first, std::uint32_t last) {
+        line_.add_records(RecordRange::closed(RecordNumber{first}, RecordNumber{last}));
+    }
+
+    SecuredLine line_{{.bytes_per_second = 11520, .crc = true}};
+    Instant now_{seconds{1}};
+};
+
+TEST_F(SecuredLineTest, shouldSendTheManualsExample) {
+    add(Kind::inquiry, "^0?JL\r", Parameter::JL);
+    ASSERT_NE(line_.begin(), nullptr);
+    EXPECT_EQ(line_.announced(now_), "^0=NR3957421711\r^0?JL\r");
+}
+
+TEST_F(SecuredLineTest, shouldSendOneFrameAfterTheOther) {
+    add_records(5, 6);
+    add(Kind::command, "^0!GO\r");
+    add_records(7, 7);
+    EXPECT_EQ(begin(), "^0=MR5\tx");
+    EXPECT_EQ(begin(), "nothing") << "the first has not been answered";
+    EXPECT_EQ(line_.on_right(), Step::next);
+    EXPECT_EQ(begin(), "^0=MR6\tx");
+    EXPECT_EQ(line_.on_right(), Step::next);
+    EXPECT_EQ(begin(), "^0!GO");
+    EXPECT_EQ(line_.first_waiting(), RecordNumber{7});
+    EXPECT_EQ(line_.on_right(), Step::next);
+    EXPECT_EQ(begin(), "^0=MR7\tx");
+    EXPECT_EQ(line_.on_right(), Step::next);
+    EXPECT_TRUE(line_.idle());
+}
+
+TEST_F(SecuredLineTest, shouldRepeatWhatThePrinterRefuses) {
+    add_records(5, 5);
+    EXPECT_EQ(begin(), "^0=MR5\tx");
+    EXPECT_EQ(line_.on_refused(), Step::send);
+    EXPECT_EQ(send(), "^0=MR5\tx");
+    EXPECT_EQ(line_.on_right(), Step::next);
+}
+
+TEST_F(SecuredLineTest, shouldNotRepeatForEver) {
+    add_records(5, 5);
+    static_cast<void>(begin());
+    int repeats = 0;
+    while (line_.on_refused() == Step::send) {
+        static_cast<void>(send());
+        ++repeats;
+    }
+    EXPECT_EQ(repeats, 7);
+    EXPECT_FALSE(line_.busy());
+}
+
+TEST_F(SecuredLineTest, shouldNeverRepeatARecordOfWhichNothingIsKnown) {
+    add_records(5, 6);
+    static_cast<void>(begin());
+    EXPECT_EQ(silence(), Step::unproven);
+    EXPECT_EQ(line_.current().number, RecordNumber{5});
+    line_.drop_records();
+    EXPECT_EQ(begin(), "nothing");
+    EXPECT_TRUE(line_.idle());
+}
+
+TEST_F(SecuredLineTest, shouldTakeTheEchoForProof) {
+    add_records(5, 6);
+    static_cast<void>(begin());
+    line_.on_echo("^0=MR5\ty");
+    line_.on_echo("^0=MR5\tx");
+    EXPECT_EQ(silence(), Step::next);
+    static_cast<void>(begin());
+    line_.on_echo("^0=MR5\tx");
+    EXPECT_EQ(silence(), Step::unproven) << "that was the one before";
+}
+
+TEST_F(SecuredLineTest, shouldWaitForTheAnswerOfAnInquiry) {
+    add(Kind::inquiry, "^0?SM\r");
+    static_cast<void>(begin());
+    EXPECT_EQ(line_.on_right(), Step::wait);
+    EXPECT_EQ(line_.on_answer(Parameter::RS), Step::wait);
+    EXPECT_EQ(line_.on_answer(Parameter::SM), Step::next);
+    EXPECT_EQ(line_.on_answer(Parameter::SM), Step::wait) << "nobody asked";
+}
+
+TEST_F(SecuredLineTest, shouldAskAgainOnlyWhenNoAnswerCanBeOnItsWay) {
+    add(Kind::inquiry, "^0?SM\r");
+    static_cast<void>(begin());
+    EXPECT_EQ(silence(), Step::send);
+    const std::string first = send();
+    EXPECT_NE(first, "^0?SM");
+    EXPECT_EQ(line_.on_answer(Parameter::SM), Step::wait) << "late: it is not the one that will be asked for";
+    EXPECT_EQ(silence(), Step::send);
+    const std::string second = send();
+    EXPECT_NE(second, first) << "an answer to the first could be on its way, too";
+    const auto code = protocol::parameter_from_code(second.substr(3, 2));
+    ASSERT_TRUE(code);
+    EXPECT_EQ(line_.on_answer(*code), Step::send);
+    EXPECT_EQ(send(), "^0?SM");
+    EXPECT_EQ(line_.on_answer(Parameter::SM), Step::next);
+}
+
+TEST_F(SecuredLineTest, shouldGiveAnInquiryUp) {
+    add(Kind::inquiry, "^0?SM\r");
+    static_cast<void>(begin());
+    int sent = 0;
+    Step step = silence();
+    for (; step == Step::send && sent < 100; step = silence()) {
+        static_cast<void>(send());
+        ++sent;
+    }
+    EXPECT_EQ(step, Step::lost);
+    EXPECT_EQ(sent, 5);
+}
+
+TEST_F(SecuredLineTest, shouldRepeatACommandButNotWhatMustHappenOnce) {
+    add(Kind::command, "^0!ST\r");
+    add(Kind::once, "^0!EQ\r");
+    static_cast<void>(begin());
+    EXPECT_EQ(silence(), Step::send);
+    const auto code = protocol::parameter_from_code(send().substr(3, 2));
+    EXPECT_EQ(line_.on_answer(*code), Step::send);
+    EXPECT_EQ(send(), "^0!ST");
+    EXPECT_EQ(line_.on_right(), Step::next);
+    EXPECT_EQ(begin(), "^0!EQ");
+    EXPECT_EQ(silence(), Step::next);
+    EXPECT_TRUE(line_.idle());
+}
+
+TEST_F(SecuredLineTest, shouldWaitAsLongAsTheBytesTake) {
+    SecuredLine slow{{.bytes_per_second = 120, .crc = true}};
+    slow.add({.kind = Kind::command, .bytes = "^0=ET" + std::string(1000, 'x') + "\r"});
+    static_cast<void>(slow.begin());
+    static_cast<void>(slow.announced(now_));
+    EXPECT_EQ(slow.on_time(now_ + seconds{8}), Step::wait);
+    EXPECT_GT(*slow.deadline(), now_ + seconds{8});
+    EXPECT_LT(*slow.deadline(), now_ + seconds{11});
+}
+
+} // namespace
+} // namespace linefeed::session

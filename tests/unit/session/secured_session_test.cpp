@@ -1,0 +1,230 @@
+// A session on a line with CRC32: a printer that keeps the protocol's section 6 stands at the other end, and does to
+// single frames what a bad line does.
+#include "conversation.hpp"
+#include "protocol/crc32.hpp"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <sstream>
+
+namespace linefeed::session {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr std::uint32_t records = 60;
+
+SessionSettings secured_settings() {
+    SessionSettings settings;
+    settings.line = {.bytes_per_second = 11520, .crc = true};
+    return settings;
+}
+
+class SecuredSessionTest : public testing::Test {
+protected:
+    /// What happens to the frame that the host sent.
+    enum class Fate { arrives, refused, unannounced, lost, word_damaged, answer_damaged };
+
+    /// Answers until the host has nothing more to say. Returns the frames that it sent, without announcements.
+    std::string answer_all() {
+        std::string story;
+        for (std::string sent = host_.sent(); !sent.empty(); sent = host_.sent()) {
+            std::istringstream lines{sent};
+            for (std::string announcement, frame; std::getline(lines, announcement) && std::getline(lines, frame);) {
+                EXPECT_EQ(announcement, "^0=NR" + std::to_string(protocol::crc32(frame)));
+                story += frame + "\n";
+                answer(frame);
+            }
+        }
+        return story;
+    }
+    void answer(const std::string& frame) {
+        const Fate fate = fate_(frame);
+        if (fate == Fate::lost) {
+            return;
+        }
+        if (fate == Fate::refused) {
+            host_.receive("^0=FC1\r");
+            return;
+        }
+        const std::string said = execute(frame);
+        if (fate == Fate::unannounced) {
+            host_.receive(said);
+            return;
+        }
+        host_.receive(fate == Fate::word_damaged ? "^0!Og\r" : "^0!OK\r");
+        if (!said.empty()) {
+            std::string crc = std::to_string(protocol::crc32(said.substr(0, said.size() - 1)));
+            crc.back() = fate == Fate::answer_damaged ? 'x' : crc.back();
+            host_.receive("^0=NR" + crc + "\r" + said);
+        }
+    }
+    /// The printer's answer, if any.
+    std::string execute(const std::string& frame) {
+        if (frame.starts_with("^0=MR")) {
+            last_ = static_cast<std::uint32_t>(std::stoul(frame.substr(5)));
+        } else if (frame.starts_with("^0=CM")) {
+            stop_at_ = frame.substr(5);
+        } else if (frame == "^0!GO") {
+            printing_ = true;
+        } else if (frame == "^0!ST" || frame == "^0!FF") {
+            printing_ = printing_ && frame != "^0!ST";
+            last_ = printed_;
+            stop_at_ = frame == "^0!ST" ? "0" : stop_at_;
+        } else if (frame == "^0?RS") {
+            return std::string{"^0=RS2\t"} + (printing_ ? "6" : "5") + "\t0\t0\t0\t0\r";
+        } else if (frame == "^0?SM") {
+            return "^0=SM256\t" + std::to_string(last_ > printed_ ? last_ - printed_ - 1 : 0) + "\t" +
+                   std::to_string(printed_) + "\t" + stop_at_ + "\t1\r";
+        } else if (frame == "^0?CC") {
+            return "^0=CC0\t0\t" + std::to_string(1000 + printed_) + "\r";
+        } else if (frame == "^0?VS") {
+            return "^0=VS1\t1\t1\t1\t1\t1\t1\t1\t1\t1\tS1\r";
+        } else if (frame == "^0?JL") {
+            return "^0=JLA\r";
+        } else if (frame.starts_with("^0?SC") || frame.starts_with("^0?DS") || frame.starts_with("^0?SH")) {
+            return "^0=" + frame.substr(3) + "1\t1\t1\r";
+        }
+        return {};
+    }
+    void print_through(std::uint32_t number) {
+        host_.connect();
+        static_cast<void>(answer_all());
+        host_.grant(1, records);
+        static_cast<void>(answer_all());
+        for (const auto& page : pages_) {
+            host_.page(*page);
+        }
+        for (int i = 0; i < 200 && !printing_; ++i) {
+            static_cast<void>(answer_all());
+            host_.wake();
+        }
+        static_cast<void>(answer_all());
+        ASSERT_EQ(host_.session.feeder().phase(), feeder::Phase::printing);
+        printed_ = number;
+        static_cast<void>(host_.story());
+    }
+    /// Lets time pass until the run is over.
+    std::string wait_for_end() {
+        std::string story;
+        for (int i = 0; i < 500 && story.find("end") == std::string::npos; ++i) {
+            host_.wake();
+            frames_ += answer_all();
+            const std::string more = host_.story();
+            story += more;
+            if (more.find("settle") != std::string::npos) {
+                host_.settled();
+            }
+            frames_ += answer_all();
+            story += host_.story();
+        }
+        return story;
+    }
+
+    std::vector<std::unique_ptr<RecordPage>> pages_ = make_pages(1, records, 20, plain_text);
+    Conversation host_{secured_settings()};
+    std::function<Fate(const std::string& frame)> fate_ = [](const std::string&) { return Fate::arrives; };
+    std::string frames_;
+    std::uint32_t last_ = 0;
+    std::uint32_t printed_ = 0;
+    std::string stop_at_ = "0";
+    bool printing_ = false;
+};
+
+TEST_F(SecuredSessionTest, shouldSendOneFrameAtATime) {
+    host_.connect();
+    EXPECT_EQ(host_.sent(), "^0=NR" + std::to_string(protocol::crc32("^0?RS")) + "\n^0?RS\n");
+}
+
+TEST_F(SecuredSessionTest, shouldPrintToTheEnd) {
+    print_through(records);
+    printing_ = false;
+    const std::string story = wait_for_end();
+    EXPECT_NE(story.find("finished"), std::string::npos) << story;
+    EXPECT_EQ(last_, records);
+}
+
+TEST_F(SecuredSessionTest, shouldRepeatARefusedRecordBeforeTheNext) {
+    int refusals = 3;
+    fate_ = [&](const std::string& frame) {
+        return frame.starts_with("^0=MR7\t") && refusals-- > 0 ? Fate::refused : Fate::arrives;
+    };
+    print_through(0);
+    EXPECT_EQ(last_, records);
+    EXPECT_EQ(refusals, -1);
+}
+
+TEST_F(SecuredSessionTest, shouldTakeADamagedWordForRight) {
+    fate_ = [](const std::string& frame) { return frame.starts_with("^0=MR7\t") ? Fate::word_damaged : Fate::arrives; };
+    print_through(0);
+    EXPECT_EQ(last_, records);
+}
+
+TEST_F(SecuredSessionTest, shouldNotBelieveAnAnswerThatWasNotAnnounced) {
+    fate_ = [](const std::string&) { return Fate::unannounced; };
+    host_.connect();
+    const std::string frames = answer_all();
+    EXPECT_EQ(frames, "^0?RS\n");
+    EXPECT_EQ(host_.session.feeder().phase(), feeder::Phase::identifying);
+    EXPECT_EQ(host_.session.statistics().frames_unexpected, 1U);
+}
+
+TEST_F(SecuredSessionTest, shouldAskAgainWhenAnAnswerIsDamaged) {
+    int damaged = 1;
+    fate_ = [&](const std::string& frame) {
+        return frame == "^0?RS" && damaged-- > 0 ? Fate::answer_damaged : Fate::arrives;
+    };
+    host_.connect();
+    static_cast<void>(answer_all());
+    host_.wait(milliseconds{500});
+    const std::string frames = answer_all();
+    EXPECT_EQ(frames.substr(0, 12), "^0?DS\n^0?RS\n");
+    EXPECT_NE(frames.find("^0?SM"), std::string::npos);
+}
+
+TEST_F(SecuredSessionTest, shouldStopBeforeAnUnprovenRecord) {
+    fate_ = [](const std::string& frame) { return frame.starts_with("^0=MR40\t") ? Fate::unannounced : Fate::arrives; };
+    host_.connect();
+    static_cast<void>(answer_all());
+    host_.grant(1, records);
+    static_cast<void>(answer_all());
+    for (const auto& page : pages_) {
+        host_.page(*page);
+    }
+    static_cast<void>(answer_all());
+    ASSERT_EQ(last_, 40U);
+    const std::string story = wait_for_end();
+    EXPECT_NE(story.find("line_noise"), std::string::npos) << story;
+    EXPECT_EQ(frames_.find("^0=MR41"), std::string::npos) << frames_;
+    EXPECT_EQ(frames_.find("^0!GO"), std::string::npos) << frames_;
+    EXPECT_NE(frames_.find("^0!FF"), std::string::npos) << frames_;
+}
+
+TEST_F(SecuredSessionTest, shouldDoubtAnUnprovenRecordThatIsPrinted) {
+    fate_ = [this](const std::string& frame) {
+        return frame.starts_with("^0=MR") && printing_ ? Fate::unannounced : Fate::arrives;
+    };
+    pages_ = make_pages(1, 400, 100, plain_text);
+    host_.connect();
+    static_cast<void>(answer_all());
+    host_.grant(1, 400);
+    static_cast<void>(answer_all());
+    for (const auto& page : pages_) {
+        host_.page(*page);
+    }
+    for (int i = 0; i < 2000 && last_ <= 256; ++i) {
+        static_cast<void>(answer_all());
+        printed_ = printing_ ? 200 : 0;
+        host_.wake();
+    }
+    static_cast<void>(answer_all());
+    ASSERT_EQ(last_, 257U);
+    printed_ = 257; // the FIFO was all but empty
+    const std::string story = wait_for_end();
+    EXPECT_NE(story.find("line_noise"), std::string::npos) << story;
+    EXPECT_NE(story.find("in doubt 257-257"), std::string::npos) << story;
+}
+
+} // namespace
+} // namespace linefeed::session
