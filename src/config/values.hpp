@@ -106,7 +106,7 @@ struct PathValue {
     [[nodiscard]] Expectation expects() const { return {"path", {}, 1, max_bytes}; }
 };
 
-/// `tcp://HOST:PORT`.
+/// `tcp://HOST:PORT` or `serial:///DEVICE`, with options.
 struct AddressValue {
     using T = link::PrinterAddress;
     [[nodiscard]] bool read(const Node& node, const std::string& key, Context& context,

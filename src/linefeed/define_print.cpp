@@ -21,7 +21,9 @@ CLI::App& add_print(CLI::App& app, PrintOptions& options, RawPrintOptions& raw) 
                  "Exit codes: 0 done, 2 usage, 3 printer not reachable, 4 stopped before the end (can be resumed),\n"
                  "5 input rejected, 6 records in doubt (an operator must decide), 1 anything else.");
     print.add_option("FILE", options.file, "CSV file or SQLite database")->required();
-    print.add_option("--printer", options.printer, "Address of the printer, tcp://HOST:PORT");
+    print.add_option("--printer", options.printer,
+                     "Address of the printer, tcp://HOST:PORT or serial:///DEVICE?baud=115200&flow=rtscts; crc=on "
+                     "behind ? secures a noisy line");
     add_layout(print, options.layout, raw.layout);
     print.add_option("--from", options.from, "Number of the first record to print; default: the first of the file");
     print.add_option("--to", options.to, "Number of the last record to print; default: the last of the file");
@@ -66,7 +68,7 @@ std::string finish_options(PrintOptions& options, const RawPrintOptions& raw) {
         return problem;
     }
     if (options.printer.empty() && !options.dry_run) {
-        return "--printer tcp://HOST:PORT is required";
+        return "--printer tcp://HOST:PORT or serial:///DEVICE is required";
     }
     return {};
 }

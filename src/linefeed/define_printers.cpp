@@ -33,7 +33,8 @@ void add_printer(CLI::App& app, Commands& commands) {
     CLI::App& printer = *app.add_subcommand("printer", "Show one printer, or do something with it");
     printer
         .add_option("PRINTER", options->printer,
-                    "Its name in the configuration, or its address (tcp://HOST:PORT) to ask it without the service")
+                    "Its name in the configuration, or its address (tcp://HOST:PORT, serial:///DEVICE) to ask it "
+                    "without the service")
         ->required();
     add_common(printer, options->common);
     constexpr const char* group = "With an address";

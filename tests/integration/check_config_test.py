@@ -64,7 +64,7 @@ class CheckConfig(unittest.TestCase):
                           f"{self.directory}/errors.yaml:1:11: unlisted"], [line.split(": ", 2)[0] + ": " + line.split(": ", 2)[1] for line in lines])
         self.assertIn("leave leading zeros out", lines[0])
         self.assertIn('did you mean "port"?', lines[1])
-        self.assertIn("printers on a serial port are not supported", lines[2])
+        self.assertIn("or serial:///dev/ttyUSB0?baud=115200&flow=rtscts", lines[2])
         self.assertIn("expected report or stop", lines[3])
 
     def test_more_problems_than_anybody_reads_are_counted(self):

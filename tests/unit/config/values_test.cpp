@@ -1,4 +1,5 @@
 // Every kind of value: what it takes, and each refusal with its text.
+#include "link/printer_address.hpp"
 #include "texts.hpp"
 
 #include <gmock/gmock.h>
@@ -124,20 +125,21 @@ TEST(ChoiceText, shouldNameTheWordsAndTheNearest) {
     EXPECT_EQ(refusal_of("layouts", "orientation", "270"), "");
 }
 
-TEST(AddressText, shouldBeATcpAddress) {
+TEST(AddressText, shouldBeAPrintersAddress) {
     const auto address = [](const std::string& value) { return refusal_of("printers", "address", value); };
-    for (const char* good : {"tcp://printer", "tcp://10.0.0.1:3002", "\"tcp://[::1]:3000\""}) {
+    for (const char* good : {"tcp://printer", "tcp://10.0.0.1:3002", "\"tcp://[::1]:3000\"", "serial:///dev/ttyUSB0",
+                             "\"serial:///dev/ttyUSB0?baud=9600&crc=on\""}) {
         EXPECT_EQ(address(good), "") << good;
     }
-    const std::string expected = "expected a printer address, tcp://HOST:PORT such as tcp://192.168.1.20:3000, found ";
+    const std::string expected = "expected a printer address, " + std::string{link::printer_address_forms} + ", found ";
     EXPECT_EQ(address("192.168.1.20:3000"), expected + "\"192.168.1.20:3000\"");
+    EXPECT_EQ(address("serial:///dev/ttyUSB0?baud=7"), expected + "\"serial:///dev/ttyUSB0?baud=7\"");
     EXPECT_EQ(address("tcp://h:0"), expected + "\"tcp://h:0\"");
     EXPECT_EQ(address("tcp://h:65536"), expected + "\"tcp://h:65536\"");
     EXPECT_EQ(address("tcp://"), expected + "\"tcp://\"");
     EXPECT_EQ(address("{}"), expected + "a mapping");
-    EXPECT_EQ(address("serial:/dev/ttyUSB0"),
-              expected + "\"serial:/dev/ttyUSB0\"; printers on a serial port are not supported");
-    EXPECT_EQ(address("/dev/ttyUSB0"), expected + "\"/dev/ttyUSB0\"; printers on a serial port are not supported");
+    EXPECT_EQ(address("serial:/dev/ttyUSB0"), expected + "\"serial:/dev/ttyUSB0\"");
+    EXPECT_EQ(address("/dev/ttyUSB0"), expected + "\"/dev/ttyUSB0\"");
 }
 
 TEST(DelimiterText, shouldBeOneCharacter) {
