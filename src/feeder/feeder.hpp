@@ -49,7 +49,7 @@ struct FeederSettings {
     Duration finish_timeout = std::chrono::seconds{2}; ///< for the print in progress, and for `!EQ` to be seen
     Duration nozzle_timeout = std::chrono::seconds{120};
     /// Records of the first fill, and of one refill, at most: what a slow line carries in a moment.
-    RecordCount fill_at_most = first_fill_at_most;
+    RecordCount fill_at_most = RecordCount{UINT32_MAX};
     RecordCount refill_at_most = RecordCount{UINT32_MAX};
     /// Records in the printer at most, however deep its FIFO: what a stop throws away has to be sent again.
     RecordCount level_at_most = RecordCount{UINT32_MAX};

@@ -174,7 +174,10 @@ Message PrinterClient::message_of(const protocol::Frame& frame) {
     if (const auto* const malformed = std::get_if<protocol::MalformedMessage>(&message)) {
         oddities_.damaged_bytes += malformed->payload.size();
     }
-    oddities_.echoes = oddities_.echoes || std::holds_alternative<protocol::ActionMessage>(message);
+    const auto* const action = std::get_if<protocol::ActionMessage>(&message);
+    const bool own = action != nullptr && (action->action == protocol::Action::crc_ok ||
+                                           action->action == protocol::Action::end_of_data);
+    oddities_.echoes = oddities_.echoes || (action != nullptr && !own);
     return message;
 }
 

@@ -50,7 +50,7 @@ void fit_to_line(SessionSettings& settings, std::size_t record_bytes) {
     const Duration record = record_time(settings.line, record_bytes);
     const Duration inquiry = inquiry_time(settings.line);
     feeder::FeederSettings& feeder = settings.feeder;
-    feeder.fill_at_most = std::min(feeder.fill_at_most, records_in(fill_takes, record));
+    feeder.fill_at_most = records_in(fill_takes, record);
     feeder.refill_at_most = records_in(block_takes, record);
 
     feeder::PacingSettings& pacing = feeder.pacing;
@@ -65,7 +65,7 @@ void fit_to_line(SessionSettings& settings, std::size_t record_bytes) {
     const Duration patience =
         answers_waited_for * inquiry + (settings.line.crc ? SecuredLine::repeats_take() : Duration::zero());
     feeder.flush_timeout += patience;
-    feeder.verify_timeout += patience + static_cast<Duration::rep>(feeder.fill_at_most.value()) * record;
+    feeder.verify_timeout += patience + fill_takes + 2 * record;
     feeder.start_timeout += patience;
     feeder.stop_timeout += patience;
     feeder.finish_timeout += patience;

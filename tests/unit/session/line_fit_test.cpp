@@ -25,7 +25,7 @@ TEST(LineFit, shouldLeaveANetworkAlone) {
     fit_to_line(settings, 40);
     EXPECT_EQ(settings.feeder.pacing.poll_min, feeder::PacingSettings{}.poll_min);
     EXPECT_EQ(settings.feeder.verify_timeout, feeder::FeederSettings{}.verify_timeout);
-    EXPECT_EQ(settings.feeder.fill_at_most, feeder::first_fill_at_most);
+    EXPECT_EQ(settings.feeder.fill_at_most, feeder::FeederSettings{}.fill_at_most);
 }
 
 TEST(LineFit, shouldSendNoMoreAtOnceThanASlowLineCarries) {
