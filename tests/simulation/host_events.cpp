@@ -1,6 +1,7 @@
 // What happens to a run: connections, bytes, completions, time; carried out in the order of link::PrinterLink and
 // daemon::JobRun.
 #include "host_run.hpp"
+#include "session/line_fit.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -13,6 +14,7 @@ using session::Session;
 namespace {
 
 constexpr Duration connect_timeout = std::chrono::seconds{3};
+constexpr std::size_t usual_record_bytes = 40;
 
 } // namespace
 
@@ -38,6 +40,8 @@ void Host::begin_run(const std::optional<daemon::OpenIssue>& open) {
     session::SessionSettings settings;
     settings.feeder.open_nozzle = context_.scenario.open_nozzle;
     settings.charsets.resize(context_.scenario.two_fields ? 2 : 1, protocol::Charset::latin1);
+    settings.line.crc = context_.scenario.crc;
+    session::fit_to_line(settings, usual_record_bytes);
     const std::uint64_t generation = ++generation_;
     run_ = std::make_unique<Run>(
         settings, plan,

@@ -30,7 +30,7 @@ bool Scenario::supply_is_sufficient() const {
     const double supply =
         2 * seconds(latency.high) * parts + std::max(depth / 8000.0, 0.001) + seconds(printer.margin) + 0.002;
     const double ledger = 2 * seconds(commit.high) + seconds(gather) + 0.002;
-    return damage == 0 && per_second * supply < depth / 2 - 1 && per_second * ledger < depth;
+    return damage == 0 && !crc && per_second * supply < depth / 2 - 1 && per_second * ledger < depth;
 }
 
 Duration Scenario::first_refill() const {
@@ -180,6 +180,13 @@ Scenario draw_scenario(std::uint64_t seed, Profile profile) {
         draw_faults(scenario, Random{seed}.fork(3));
         Random serial = Random{seed}.fork(4);
         scenario.damage = serial.chance(0.2) ? 1e-5 * static_cast<double>(serial.spread(10, 1000)) : 0;
+        Random secured = Random{seed}.fork(7);
+        if (secured.chance(0.1)) {
+            scenario.crc = true; // one frame at a time: the line must be as slow as that
+            scenario.period = std::max<Duration>(scenario.period, 8 * scenario.latency.high);
+            scenario.records = std::min(scenario.records, 100U);
+            scenario.damage = 1e-4 * static_cast<double>(secured.spread(1, 300));
+        }
         scenario.start_under_fill = Random{seed}.fork(5).chance(0.1);
     }
     if (profile != Profile::counted) {

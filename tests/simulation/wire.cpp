@@ -56,7 +56,9 @@ void Wire::put(Connection& connection, bool to_printer, std::string_view bytes) 
     chunk.to_printer = to_printer;
     chunk.bytes.assign(bytes);
     const bool noise = context_.scenario.damage > 0 && random_.chance(context_.scenario.damage);
-    if (noise && !(to_printer && noise_to_printer_)) {
+    if (noise && context_.scenario.crc) {
+        damage_anything(chunk.bytes, to_printer);
+    } else if (noise && !(to_printer && noise_to_printer_)) {
         damage(chunk.bytes, to_printer);
     }
     if (to_printer) {
@@ -80,6 +82,20 @@ void Wire::damage(std::string& bytes, bool to_printer) {
         bytes[at] = static_cast<char>(0x80U | random_.below(0x80));
     } else {
         bytes.erase(at, 1);
+    }
+    context_.trace.say(context_.now, to_printer ? "damaged to printer" : "damaged to host", bytes);
+    ++context_.counts.bytes_damaged;
+}
+
+/// With CRC32 nothing is spared: up to three bytes anywhere are changed into any other, or lost.
+void Wire::damage_anything(std::string& bytes, bool to_printer) {
+    for (std::uint64_t hits = 1 + random_.below(3); hits > 0 && !bytes.empty(); --hits) {
+        const std::size_t at = random_.below(bytes.size());
+        if (random_.chance(0.7)) {
+            bytes[at] = static_cast<char>(static_cast<unsigned char>(bytes[at]) ^ (1 + random_.below(0xFF)));
+        } else {
+            bytes.erase(at, 1);
+        }
     }
     context_.trace.say(context_.now, to_printer ? "damaged to printer" : "damaged to host", bytes);
     ++context_.counts.bytes_damaged;

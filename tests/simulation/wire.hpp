@@ -63,6 +63,7 @@ private:
     void send(std::uint64_t connection, bool to_printer, std::string_view bytes);
     void put(Connection& connection, bool to_printer, std::string_view bytes);
     void damage(std::string& bytes, bool to_printer);
+    void damage_anything(std::string& bytes, bool to_printer);
 
     Context& context_;
     Random random_;
