@@ -127,7 +127,8 @@ Result<DropReport> DropFolder::read(Claimed& batch, const FileLook& look, bool& 
     if (!known) {
         return known.error();
     }
-    if (*known) {
+    const bool images_may_differ = *known && (*known)->this_file && !batch.begun && reads_images(spec.layout);
+    if (*known && !images_may_differ) {
         const spool::Job& job = (*known)->job;
         const bool own = batch.begun && (*known)->this_file;
         const bool same_way = job.spec.layout == spec.layout && job.spec.base == spec.base;
