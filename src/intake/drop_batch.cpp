@@ -144,6 +144,7 @@ Result<DropReport> DropFolder::read(Claimed& batch, const FileLook& look, bool& 
         return synced.error();
     }
     batch.begun = true;
+    events_.importing(batch.name, batch.left_over);
     if (auto imported = import(batch, std::move(*file), look, spec, report, changed); !imported) {
         return imported.error();
     }

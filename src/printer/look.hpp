@@ -10,12 +10,12 @@ namespace linefeed::printer {
 
 /// What the printer said. Absent = it did not answer, or was not asked, as in standby.
 struct Look {
-    std::string unreachable; ///< why nobody is there; empty = the connection was taken
+    std::string unreachable{}; ///< why nobody is there; empty = the connection was taken
     /// The connection was taken, and nothing came: in standby, or another program holds the printer.
     bool silent = false;
-    std::optional<protocol::MachineStatus> machine;
-    std::optional<protocol::VersionInfo> version;
-    std::optional<protocol::Counters> counters;
+    std::optional<protocol::MachineStatus> machine{};
+    std::optional<protocol::VersionInfo> version{};
+    std::optional<protocol::Counters> counters{};
 };
 
 /// `?RS`, `?VS` and `?CC` on a connection of its own, which is closed again: a printer that serves one at a time stays
