@@ -32,7 +32,7 @@ struct FolderServices {
     IntakeCounts& counts;
     /// A job has been put into the queue of that printer; called on the folder's thread.
     std::function<void(const std::string& printer)> on_queued;
-    std::int64_t started_ns = 0; ///< when the service was started, since the Unix epoch
+    std::int64_t started_ns = 0; ///< when the service was started, by the clock of files
     /// A file that came before the service was started becomes a job that may start by itself, once it is in
     /// the queue of that printer; called before it is, on the folder's thread.
     std::function<void(const std::string& printer, const std::string& words)> on_left_over;

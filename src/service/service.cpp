@@ -14,6 +14,7 @@ Service::Service(ServiceOptions options, spool::Spool spool)
     , take_over_(std::move(options.take_over))
     , version_(std::move(options.version))
     , started_ns_(daemon::wall_clock_ns())
+    , files_since_ns_(daemon::file_clock_ns())
     , spool_(std::move(spool))
     , feed_(options.settings.real_time)
     , store_(spool_)
@@ -119,7 +120,7 @@ void Service::open_folders() {
                                   events_,
                                   counts_,
                                   [this](const std::string& printer) { look_for_work(printer); },
-                                  started_ns_,
+                                  files_since_ns_,
                                   [this](const std::string& printer, const std::string& words) { leave_to_a_person(printer, words); }};
     const std::lock_guard lock{parts_mutex_};
     if (ending_ || !folders_.empty()) {

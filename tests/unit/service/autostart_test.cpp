@@ -119,6 +119,7 @@ TEST_F(AutostartTest, shouldNotLetAJobThatMayNotStartByItselfBeOvertaken) {
 TEST_F(AutostartTest, shouldNotStartWhatLayInTheFolderBeforeTheServiceWasStarted) {
     SimulatedPrinter printer{directory_ / "tape.csv", 1000};
     drop("a.csv", 20, 1);
+    std::this_thread::sleep_for(std::chrono::milliseconds{30}); // the time of files stands still for a tick
     open(settings(printer.address()));
     const spool::JobId a = job_named("a.csv");
     drop("b.csv", 20, 21);
