@@ -1,5 +1,7 @@
 #include "cli/dry_run.hpp"
 
+#include "intake/layout.hpp"
+
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -60,14 +62,17 @@ Result<std::optional<Known>> look_up(const PrintOptions& options, const spool::J
     if (!spool) {
         return spool.error();
     }
-    const auto same = spool->find_by_content(job.content_sha256, job.spec.layout);
+    const auto same = spool->find_by_content(job.content_sha256);
     if (!same) {
         return same.error();
     }
-    if (same->empty()) {
+    const auto known = std::find_if(same->rbegin(), same->rend(), [&job](const spool::Job& other) {
+        return intake::is_same_way(other.spec.layout, job.spec.layout);
+    });
+    if (known == same->rend()) {
         return std::optional<Known>{};
     }
-    const spool::JobId id = same->back().id;
+    const spool::JobId id = known->id;
     const auto state = spool->ledger_state(id);
     if (!state) {
         return state.error();

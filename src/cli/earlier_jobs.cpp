@@ -1,6 +1,7 @@
 #include "cli/earlier_jobs.hpp"
 
 #include "intake/grown_batch.hpp"
+#include "intake/layout.hpp"
 
 #include <algorithm>
 
@@ -112,7 +113,7 @@ Result<void> check_unfinished(spool::Spool& spool, const spool::Job& job) {
         return unfinished.error();
     }
     for (const spool::Job& old : *unfinished) {
-        if (old.id == job.id || old.spec.layout != job.spec.layout || old.records.empty()) {
+        if (old.id == job.id || !intake::is_same_way(old.spec.layout, job.spec.layout) || old.records.empty()) {
             continue;
         }
         const auto same = begins_with(spool, job, old);
@@ -143,7 +144,7 @@ Result<bool> may_be_known(spool::Spool& spool, const spool::JobSpec& spec, spool
         if (!new_job && other.spec.source.path == spec.source.path) {
             return true;
         }
-        if (other.spec.layout != spec.layout || other.spec.base != spec.base) {
+        if (!intake::is_same_way(other.spec.layout, spec.layout) || other.spec.base != spec.base) {
             continue;
         }
         const auto page = spool.read_page(other.id, spec.base.next());
@@ -159,12 +160,13 @@ Result<bool> may_be_known(spool::Spool& spool, const spool::JobSpec& spec, spool
 }
 
 Result<std::optional<spool::Job>> twin_of(spool::Spool& spool, const spool::Job& job, bool new_job) {
-    const auto same = spool.find_by_content(job.content_sha256, job.spec.layout);
+    const auto same = spool.find_by_content(job.content_sha256);
     if (!same) {
         return same.error();
     }
-    const auto twin =
-        std::find_if(same->rbegin(), same->rend(), [&](const spool::Job& other) { return other.id != job.id; });
+    const auto twin = std::find_if(same->rbegin(), same->rend(), [&](const spool::Job& other) {
+        return other.id != job.id && intake::is_same_way(other.spec.layout, job.spec.layout);
+    });
     if (twin == same->rend()) {
         return std::optional<spool::Job>{};
     }

@@ -11,6 +11,7 @@
 #include "protocol/printable.hpp"
 #include "protocol/profile.hpp"
 
+#include <algorithm>
 #include <iostream>
 #include <unistd.h>
 
@@ -326,8 +327,9 @@ ExitCode run_preview(const PreviewOptions& options) {
         if (options.printer.common.json) {
             show_json(*answer);
         } else if (options.png.empty()) {
-            constexpr std::size_t without_terminal = 160;
-            const auto columns = static_cast<std::uint32_t>(stdout_screen().columns.value_or(without_terminal));
+            // Where there is no terminal, nothing has to fit: each row of dots is a line.
+            const auto columns =
+                static_cast<std::uint32_t>(stdout_screen().columns.value_or(std::max(picture->width, 1U)));
             show(printer::to_text(*picture, columns,
                                   options.ascii ? printer::Drawing::ascii : printer::Drawing::unicode));
         }

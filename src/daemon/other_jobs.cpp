@@ -29,12 +29,22 @@ Result<std::vector<OtherJob>> others_at(spool::Spool& spool, spool::JobId job, c
     return others;
 }
 
+Result<std::vector<OtherJob>> find_others(RunThreads threads, spool::JobId job, const std::string& printer) {
+    Result<std::vector<OtherJob>> others{std::vector<OtherJob>{}};
+    threads.store.call([&](spool::Spool& spool) { others = others_at(spool, job, printer); });
+    return others;
+}
+
 } // namespace
+
+Result<bool> has_other_jobs(RunThreads threads, spool::JobId job, const std::string& printer) {
+    const auto others = find_others(threads, job, printer);
+    return others ? Result<bool>{!others->empty()} : others.error();
+}
 
 Result<std::optional<Hindrance>> settle_other_jobs(RunThreads threads, spool::Spool& spool, spool::JobId job,
                                                    const JobRunSettings& settings, const WatchRun& watch) {
-    Result<std::vector<OtherJob>> others{std::vector<OtherJob>{}};
-    threads.store.call([&](spool::Spool& owned) { others = others_at(owned, job, link::to_string(settings.printer)); });
+    const auto others = find_others(threads, job, link::to_string(settings.printer));
     if (!others) {
         return others.error();
     }

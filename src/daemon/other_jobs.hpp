@@ -6,6 +6,7 @@
 
 #include <functional>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace linefeed::daemon {
@@ -18,6 +19,9 @@ struct Hindrance {
     feeder::Outcome outcome;
     std::string detail;
 };
+
+/// Whether there is anything to ask the printer at that address about jobs other than `job`.
+[[nodiscard]] Result<bool> has_other_jobs(RunThreads threads, spool::JobId job, const std::string& printer);
 
 /// Asks the printer of `settings` how far it came with records of jobs other than `job`. Absent = all that it knows is
 /// in the ledger now.

@@ -48,41 +48,36 @@ Finding reachable(const PreflightFacts& facts) {
     return ok(check, "the printer answers");
 }
 
-Finding identity(const protocol::VersionInfo& version, const PreflightRules& rules) {
-    constexpr const char* check = "identity";
-    const std::string& known = rules.known_serial_number;
-    if (!known.empty() && version.serial_number.empty()) {
-        return warning(check, "the printer does not say its serial number; it was " + known,
-                       "Look whether it is the right machine.");
+/// Of an automatic profile.
+Finding told_profile(const protocol::VersionInfo& version, const PreflightRules& rules) {
+    constexpr const char* check = "profile";
+    const auto told = protocol::profile_for(version.type, version.firmware);
+    const bool escapes_are_right = told && told->escapes == protocol::EscapeMode::backslash;
+    if (!escapes_are_right && rules.records_have_escapes && rules.records_have_escapes()) {
+        return told ? problem(check,
+                              "auto: " + std::string{told->name} +
+                                  ", which knows no escapes; the job was imported for " +
+                                  "firmware that does, and ^ and \\ would come out wrong",
+                              "Import its file again for this printer.")
+                    : problem(check,
+                              "auto, but the printer does not say a type and a firmware that are known; the job has "
+                              "records with ^ or \\, which come out wrong where the firmware knows no escapes",
+                              "Look up the printer's firmware, name its profile in the settings (jet3up, jet3, jet2neo "
+                              "or jet2neo-v71), and start again.");
     }
-    const std::string name = (version.type.empty() ? "a printer" : version.type) + ", firmware " +
-                             (version.firmware.empty() ? "unknown" : version.firmware) + ", serial number " +
-                             (version.serial_number.empty() ? "unknown" : version.serial_number);
-    if (!known.empty() && known != version.serial_number) {
-        return problem(check, name + "; the serial number here was " + known,
-                       "If the printer was exchanged, accept it: linefeed printer " + rules.printer.name + " accept " +
-                           version.serial_number + ". Otherwise the address is that of another printer.");
-    }
-    return ok(check, name);
+    return told ? ok(check, "auto: " + std::string{told->name} + ", since it is a " + version.type + ", firmware " +
+                                version.firmware)
+                : warning(check, "auto, but the printer does not say a type and a firmware that are known",
+                          "Name its profile in the settings: until then records with ^ or \\ are refused.");
 }
 
 Finding profile(const protocol::VersionInfo& version, const PreflightRules& rules) {
     constexpr const char* check = "profile";
+    if (protocol::is_automatic(rules.printer.profile)) {
+        return told_profile(version, rules);
+    }
     const std::string_view chosen = rules.printer.profile.name;
     const auto told = protocol::profile_for(version.type, version.firmware);
-    if (protocol::is_automatic(rules.printer.profile)) {
-        if (told && told->escapes == protocol::EscapeMode::none &&
-            rules.record_escapes == protocol::EscapeMode::backslash) {
-            return problem(check,
-                           "auto: " + std::string{told->name} + ", which knows no escapes; the job was imported for " +
-                               "firmware that does, and ^ and \\ would come out wrong",
-                           "Import its file again for this printer.");
-        }
-        return told ? ok(check, "auto: " + std::string{told->name} + ", since it is a " + version.type + ", firmware " +
-                                    version.firmware)
-                    : warning(check, "auto, but the printer does not say a type and a firmware that are known",
-                              "Name its profile in the settings: until then records with ^ or \\ are refused.");
-    }
     const bool says_neo = version.type.find("2neo") != std::string::npos;
     const bool chosen_neo = chosen.starts_with("jet2neo");
     if (version.type.empty()) {
@@ -264,6 +259,29 @@ Finding connections(bool second_is_answered) {
 
 } // namespace
 
+Finding judge_identity(const protocol::VersionInfo& version, const PreflightRules& rules) {
+    constexpr const char* check = "identity";
+    const std::string& known = rules.known_serial_number;
+    if (!known.empty() && version.serial_number.empty()) {
+        return warning(check, "the printer does not say its serial number; it was " + known,
+                       "Look whether it is the right machine.");
+    }
+    const std::string name = (version.type.empty() ? "a printer" : version.type) + ", firmware " +
+                             (version.firmware.empty() ? "unknown" : version.firmware) + ", serial number " +
+                             (version.serial_number.empty() ? "unknown" : version.serial_number);
+    if (!known.empty() && known != version.serial_number) {
+        return problem(check, name + "; the serial number here was " + known,
+                       "If the printer was exchanged, accept it: linefeed printer " + rules.printer.name + " accept " +
+                           version.serial_number + ". Otherwise the address is that of another printer.");
+    }
+    if (!rules.same_machine.empty()) {
+        return warning(
+            check, name + "; printer " + rules.same_machine.front() + " is the same machine",
+            "Look at the addresses of both: what one of them starts loses what the other has in the printer.");
+    }
+    return ok(check, name);
+}
+
 bool same_job_file(std::string_view reported, std::string_view configured) {
     const auto plain = [](std::string_view path) {
         std::string text;
@@ -289,13 +307,14 @@ std::vector<Finding> judge(const PreflightFacts& facts, const PreflightRules& ru
         return findings;
     }
     if (facts.version || !rules.known_serial_number.empty()) {
-        findings.push_back(identity(facts.version.value_or(protocol::VersionInfo{}), rules));
+        findings.push_back(judge_identity(facts.version.value_or(protocol::VersionInfo{}), rules));
     }
-    if (facts.version) {
-        findings.push_back(profile(*facts.version, rules));
+    const bool in_standby = facts.machine->machine == MachineState::standby; // where it tells nothing
+    if (facts.version || (protocol::is_automatic(rules.printer.profile) && !in_standby)) {
+        findings.push_back(profile(facts.version.value_or(protocol::VersionInfo{}), rules));
     }
     findings.push_back(ready(*facts.machine, rules));
-    if (facts.machine->machine == MachineState::standby || facts.broke_off) {
+    if (in_standby || facts.broke_off) {
         return findings; // nothing else is valid
     }
     findings.push_back(nozzle(*facts.machine));

@@ -7,6 +7,7 @@
 #include "daemon/operations.hpp"
 #include "printer/printer_client.hpp"
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -36,9 +37,15 @@ struct PreflightRules {
     std::string known_serial_number{}; ///< of the last time; empty = unknown
     /// A run of ours may be under way on it, which the start would stop or go on with.
     bool may_be_printing = false;
-    /// What the records of the job that is to start were written for; absent = there is no job yet.
-    std::optional<protocol::EscapeMode> record_escapes{};
+    /// Whether any record of the job that is to start was written with an escape. Asked only where it matters, as it
+    /// may take time; empty = there is no job yet.
+    std::function<bool()> records_have_escapes{};
+    /// Other printers of the settings behind which the same machine was found.
+    std::vector<std::string> same_machine{};
 };
+
+/// Which machine it is, for a printer that has told it.
+[[nodiscard]] Finding judge_identity(const protocol::VersionInfo& version, const PreflightRules& rules);
 
 /// In this order: reachable, identity, profile, ready, nozzle, cover, errors, job_file, fifo, stop_point, counter,
 /// modes, connections. What could not be looked at is left out.

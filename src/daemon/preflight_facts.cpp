@@ -1,5 +1,6 @@
 // The conversation of a preflight, see preflight.hpp.
 #include "daemon/preflight.hpp"
+#include "printer/look.hpp"
 
 namespace linefeed::daemon {
 
@@ -22,10 +23,10 @@ PreflightFacts gather_facts(const printer::ClientSettings& settings) {
         return facts;
     }
     printer::PrinterClient& printer = **connected;
-    facts.machine = printer.ask<protocol::MachineStatus>(Parameter::RS);
+    facts.machine = printer::ask_status(printer);
     const bool talks = facts.machine && facts.machine->machine != protocol::MachineState::standby;
     if (talks) { // in standby nothing else is answered
-        facts.version = printer.ask<protocol::VersionInfo>(Parameter::VS);
+        facts.version = printer::ask_version(printer);
         facts.job = printer.ask<protocol::JobName>(Parameter::JL);
         if (printer.ask<protocol::MailStatus>(Parameter::SM)) { // may be one inquiry old
             facts.mail = printer.ask<protocol::MailStatus>(Parameter::SM);

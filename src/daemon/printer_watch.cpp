@@ -23,13 +23,18 @@ std::string words_of(const PrinterError& error, const config::Settings& settings
 
 std::vector<PrinterWatch::News> PrinterWatch::take(const printer::Look& look, const Known& known) {
     std::vector<News> news;
-    if (!look.machine) {
+    if (!look.machine && !look.silent) {
         take_failure(look, news);
         return news;
     }
     if (std::exchange(failures_, 0) == failures_until_down) {
-        news.push_back({event_kind::printer_up, "the printer answers again"});
+        news.push_back({event_kind::printer_up, "the printer is there again"});
     }
+    if (!look.machine) {
+        take_silence(news);
+        return news;
+    }
+    silent_ = false;
     take_identity(look, known, news);
     take_machine(*look.machine, known, news);
     return news;
@@ -52,8 +57,17 @@ void PrinterWatch::take_failure(const printer::Look& look, std::vector<News>& ne
     }
 }
 
-void PrinterWatch::take_machine(const protocol::MachineStatus& now, const Known& known, std::vector<News>& news) const {
-    const PrinterError before = known.machine ? known.machine->error : PrinterError{};
+/// A printer in standby need not answer: that is as it should be.
+void PrinterWatch::take_silence(std::vector<News>& news) {
+    if (!std::exchange(silent_, true)) {
+        news.push_back({event_kind::printer_notice, "it takes the connection, but does not answer: it may be in "
+                                                    "standby, or another program may hold it"});
+    }
+}
+
+void PrinterWatch::take_machine(const protocol::MachineStatus& now, const Known& known, std::vector<News>& news) {
+    const auto last = std::exchange(told_, now);
+    const PrinterError before = last ? last->error : PrinterError{};
     if (now.error != before && now.error.none()) {
         news.push_back({event_kind::printer_notice, "the error is gone: " + describe(before)});
     } else if (now.error != before) {
@@ -62,12 +76,12 @@ void PrinterWatch::take_machine(const protocol::MachineStatus& now, const Known&
         news.push_back(
             {stops ? event_kind::printer_error : event_kind::printer_warning, words_of(now.error, known.settings)});
     }
-    if (now.cover_open && (!known.machine || !known.machine->cover_open)) {
+    if (now.cover_open && (!last || !last->cover_open)) {
         news.push_back({event_kind::printer_warning, "the head cover is open. Close it before the next start"});
-    } else if (!now.cover_open && known.machine && known.machine->cover_open) {
+    } else if (!now.cover_open && last && last->cover_open) {
         news.push_back({event_kind::printer_notice, "the head cover is closed"});
     }
-    const bool printed = known.machine && known.machine->machine == MachineState::printing;
+    const bool printed = last && last->machine == MachineState::printing;
     if (now.machine == MachineState::printing && !printed) {
         news.push_back({event_kind::printer_warning,
                         "it is printing, and linefeed has not started it or no longer looks after it. Stop it at the "

@@ -13,7 +13,7 @@
 
 namespace linefeed::daemon {
 
-/// Flow: take() after each look. One thread.
+/// Flow: take() after each look, heard() whenever something else has been told meanwhile. One thread.
 class PrinterWatch {
 public:
     struct News {
@@ -21,27 +21,31 @@ public:
         std::string words;
         friend bool operator==(const News&, const News&) = default;
     };
-    /// What was known before the look, by whatever way, and what words there are for it.
+    /// What there are words for, and which machine is meant.
     struct Known {
         const config::Settings& settings;
         const config::PrinterSettings& printer;
-        std::optional<protocol::MachineStatus> machine{};
         std::string serial_number{}; ///< of the machine that stands behind the printer's name; empty = not known yet
     };
     /// What is new, in words with what to do.
     [[nodiscard]] std::vector<News> take(const printer::Look& look, const Known& known);
+    /// A start or a run has told what there is to tell of this state: it is no news.
+    void heard(const protocol::MachineStatus& machine) { told_ = machine; }
     /// By the looks so far: connecting = the last one failed, and it may be chance.
     [[nodiscard]] LinkState link() const;
 
 private:
     void take_failure(const printer::Look& look, std::vector<News>& news);
-    void take_machine(const protocol::MachineStatus& now, const Known& known, std::vector<News>& news) const;
+    void take_silence(std::vector<News>& news);
+    void take_machine(const protocol::MachineStatus& now, const Known& known, std::vector<News>& news);
     void take_identity(const printer::Look& look, const Known& known, std::vector<News>& news);
 
     /// Another program may hold the printer's only connection for a moment: one look that fails means nothing.
     static constexpr int failures_until_down = 2;
-    int failures_ = 0;          ///< in a row, at most failures_until_down
-    std::string other_machine_; ///< its serial number was told
+    int failures_ = 0;                            ///< in a row, at most failures_until_down
+    bool silent_ = false;                         ///< by the last look
+    std::optional<protocol::MachineStatus> told_; ///< the state of which everything is told
+    std::string other_machine_;                   ///< its serial number was told
 };
 
 } // namespace linefeed::daemon

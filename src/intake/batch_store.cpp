@@ -1,11 +1,21 @@
 #include "intake/batch_store.hpp"
 
 #include "intake/grown_batch.hpp"
+#include "intake/layout.hpp"
 
 #include <algorithm>
 #include <filesystem>
 
 namespace linefeed::intake {
+
+namespace {
+
+bool is_same_folder(const spool::JobSpec& one, const spool::JobSpec& other) {
+    return std::filesystem::path{one.source.path}.parent_path() ==
+           std::filesystem::path{other.source.path}.parent_path();
+}
+
+} // namespace
 
 Result<FoundBatch> find_batch(spool::Spool& spool, const spool::JobSpec& spec) {
     const auto jobs = spool.find_by_source_bytes(spec.source_sha256);
@@ -24,10 +34,11 @@ Result<FoundBatch> find_batch(spool::Spool& spool, const spool::JobSpec& spec) {
         return *earlier ? FoundBatch{KnownBatch{std::move(**earlier), false}, job.id}
                         : FoundBatch{KnownBatch{job, true}, {}};
     }
-    const std::filesystem::path folder = std::filesystem::path{spec.source.path}.parent_path();
+    if (reads_images(spec.layout)) {
+        return FoundBatch{}; // its images may be others now: the records tell
+    }
     for (const spool::Job& job : *jobs) {
-        if ((job.spec.layout == spec.layout && job.spec.base == spec.base) ||
-            std::filesystem::path{job.spec.source.path}.parent_path() == folder) {
+        if ((job.spec.layout == spec.layout && job.spec.base == spec.base) || is_same_folder(job.spec, spec)) {
             return FoundBatch{KnownBatch{job, false}, {}};
         }
     }
@@ -35,12 +46,15 @@ Result<FoundBatch> find_batch(spool::Spool& spool, const spool::JobSpec& spec) {
 }
 
 Result<std::optional<spool::Job>> earlier_job(spool::Spool& spool, const spool::Job& job) {
-    auto same = spool.find_by_content(job.content_sha256, job.spec.layout);
+    auto same = spool.find_by_content(job.content_sha256);
     if (!same) {
         return same.error();
     }
     // Whichever was begun first: imports may overlap, and this one has become ready last.
-    const auto other = std::ranges::find_if(*same, [&](const spool::Job& one) { return one.id != job.id; });
+    const auto other = std::ranges::find_if(*same, [&](const spool::Job& one) {
+        return one.id != job.id &&
+               (is_same_way(one.spec.layout, job.spec.layout) || is_same_folder(one.spec, job.spec));
+    });
     if (other == same->end()) {
         return std::optional<spool::Job>{};
     }

@@ -30,7 +30,8 @@ public:
     virtual ~BatchStore() = default;
     /// The job for a file of these bytes (spec.source_sha256) that was read in the same way, or came out of the same
     /// folder, however it was read: a change of the layout is no reason to print a batch again. Another folder may read
-    /// the same bytes in another way, for another printer.
+    /// the same bytes in another way, for another printer. Where images belong to the records, only this very file is
+    /// known by its bytes.
     [[nodiscard]] virtual Result<std::optional<KnownBatch>> find(const spool::JobSpec& spec) = 0;
     /// As import_source(). The job becomes ready in one transaction, and not unless options.check_source allows it.
     [[nodiscard]] virtual Result<BatchImport> import(RowSource& source, const spool::JobSpec& spec,
@@ -44,8 +45,9 @@ struct FoundBatch {
     std::optional<spool::JobId> gives_way;
 };
 [[nodiscard]] Result<FoundBatch> find_batch(spool::Spool& spool, const spool::JobSpec& spec);
-/// The other job with the records of `job`, which has to go then; absent = it stays. Whoever decides so begins to
-/// remove it before anybody else asks: two of a kind would otherwise give way to each other.
+/// The other job with the records of `job`, which has to go then; absent = it stays. It was read in the same way but
+/// for the profile, or came out of the same folder. Whoever decides so begins to remove it before anybody else asks:
+/// two of a kind would otherwise give way to each other.
 [[nodiscard]] Result<std::optional<spool::Job>> earlier_job(spool::Spool& spool, const spool::Job& job);
 
 /// For whoever owns the spool. The spool must outlive it.

@@ -127,7 +127,8 @@ Result<DropReport> DropFolder::read(Claimed& batch, const FileLook& look, bool& 
     if (!known) {
         return known.error();
     }
-    if (*known) {
+    const bool images_may_differ = *known && (*known)->this_file && !batch.begun && reads_images(spec.layout);
+    if (*known && !images_may_differ) {
         const spool::Job& job = (*known)->job;
         const bool own = batch.begun && (*known)->this_file;
         const bool same_way = job.spec.layout == spec.layout && job.spec.base == spec.base;
@@ -143,6 +144,7 @@ Result<DropReport> DropFolder::read(Claimed& batch, const FileLook& look, bool& 
         return synced.error();
     }
     batch.begun = true;
+    events_.importing(batch.name, batch.left_over);
     if (auto imported = import(batch, std::move(*file), look, spec, report, changed); !imported) {
         return imported.error();
     }

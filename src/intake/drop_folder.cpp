@@ -54,7 +54,9 @@ DropFolder::DropFolder(DropSettings settings, DropDirectory directory, std::uniq
 
 void DropFolder::take_up_claimed(const std::vector<std::string>& names) {
     for (const std::string& name : names) {
-        claimed_.push_back({name, name, {}, true});
+        const auto look = directory_.look_claimed(name);
+        const bool left_over = look && *look && (*look)->changed_ns < settings_.started_ns;
+        claimed_.push_back({.kept = name, .name = name, .begun = true, .left_over = left_over});
         // Its done mark may have been left behind; one of a new file of this name has to stay.
         const auto again = directory_.look(name);
         const auto mark = directory_.look(name + std::string{done_mark_ending});
@@ -231,6 +233,8 @@ void DropFolder::consider(Candidates::iterator candidate, Instant now) {
         return;
     }
     const std::string ready = name;
+    // A rename counts as a change: so this is when it came, or when it was said to be whole.
+    const std::int64_t came_ns = std::max((*look)->changed_ns, mark && *mark ? (*mark)->changed_ns : 0);
     events_.reached(DropStep::settled);
     auto kept = directory_.claim(ready);
     if (!kept) {
@@ -248,7 +252,10 @@ void DropFolder::consider(Candidates::iterator candidate, Instant now) {
     const auto claimed_look = directory_.look_claimed(**kept);
     const bool same = claimed_look && *claimed_look && same_content(**claimed_look, **look);
     // Another file, or more of it, than that which has settled: it has to settle where it is now.
-    claimed_.push_back({std::move(**kept), ready, same ? now : now + settings_.settle.quiet});
+    claimed_.push_back({.kept = std::move(**kept),
+                        .name = ready,
+                        .not_before = same ? now : now + settings_.settle.quiet,
+                        .left_over = came_ns < settings_.started_ns});
 }
 
 void DropFolder::put_off(Candidates::iterator candidate, const SettleDecision& decision, Instant now) {

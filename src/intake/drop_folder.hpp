@@ -40,7 +40,8 @@ struct DropSettings {
     std::optional<WatchMode> mode{};  ///< absent = inotify, but poll on network file systems
     std::optional<Duration> rescan{}; ///< see watch_folder()
     Layout layout{};
-    bool refuse_grown = true; ///< a file that begins with all the records of an earlier one and has more fails
+    std::int64_t started_ns = 0; ///< what came before that time, since the Unix epoch, is left over; 0 = nothing is
+    bool refuse_grown = true;    ///< a file that begins with all the records of an earlier one and has more fails
     std::uint64_t max_bytes = std::uint64_t{64} << 30U; ///< larger files fail unread
 };
 
@@ -62,6 +63,8 @@ public:
     virtual void finished(const DropReport& report) = 0;
     /// A file stays where it is for now, and why; an empty name = about the folder.
     virtual void note(const std::string& name, const std::string& words) = 0;
+    /// A file is about to become a job. `left_over` = it came before DropSettings::started_ns.
+    virtual void importing(const std::string& /*name*/, bool /*left_over*/) {}
     /// A long file: how much of it has been read, 0…1, first for its hash, then for its `rows`. False breaks off.
     [[nodiscard]] virtual bool progress(const std::string& name, std::uint64_t rows, double fraction) = 0;
     /// For tests of crashes.
@@ -131,6 +134,7 @@ private:
         Instant not_before{}; ///< it changed under our eyes
         bool begun = false;   ///< its import, now or before the start: its job may be there already
         bool told = false;    ///< that it changes
+        bool left_over = false;
     };
     /// True if it is over, false if it is to be read again later.
     [[nodiscard]] Result<bool> handle(Claimed& batch, Instant now);

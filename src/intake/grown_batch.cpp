@@ -1,7 +1,5 @@
 #include "intake/grown_batch.hpp"
 
-#include "base/assert.hpp"
-
 #include <algorithm>
 #include <filesystem>
 
@@ -96,7 +94,7 @@ Result<void> GrownCheck::finish() const {
         std::ranges::any_of(alike_, [this](const spool::Job& job) { return job.records.last() == records_.last(); });
     const auto longest = std::find_if(alike_.rbegin(), alike_.rend(),
                                       [this](const spool::Job& job) { return job.records.last() < records_.last(); });
-    if (known || longest == alike_.rend()) { // the very same batch is found by its content
+    if (known || longest == alike_.rend()) { // the very same batch is found by its content, see earlier_job()
         return {};
     }
     return Failure{FailureKind::input,
@@ -108,13 +106,9 @@ Result<void> GrownCheck::finish() const {
 }
 
 ImportOptions GrownCheck::in(const ImportOptions& options) {
-    LINEFEED_ASSERT(options.check_source);
     ImportOptions with = options;
     with.check_page = [this](const RecordPage& page) { return add(page); };
-    with.check_source = [this, before = options.check_source]() -> Result<void> {
-        auto unchanged = before();
-        return unchanged ? finish() : unchanged;
-    };
+    with.check_records = [this] { return finish(); };
     return with;
 }
 

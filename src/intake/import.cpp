@@ -43,6 +43,7 @@ public:
         , spec_(spec)
         , check_source_(options.check_source ? options.check_source : [&spec] { return check_unchanged(spec.source); })
         , check_page_(options.check_page)
+        , check_records_(options.check_records)
         , pages_(source, spec.base, options) {}
 
     [[nodiscard]] Result<ImportOutcome> run();
@@ -54,6 +55,7 @@ private:
     const spool::JobSpec& spec_;
     std::function<Result<void>()> check_source_;
     std::function<Result<void>(const RecordPage&)> check_page_;
+    std::function<Result<void>()> check_records_;
     PageMaker pages_;
     bool refused_ = false;
 };
@@ -91,6 +93,9 @@ Result<ImportOutcome> Import::finish() {
     }
     if (report.records == 0) {
         return ImportOutcome{std::move(report), std::nullopt};
+    }
+    if (auto right = check_records_ ? check_records_() : Result<void>{}; !right) {
+        return right.error();
     }
     auto job = target_.commit(to_json(report));
     if (!job) {

@@ -53,8 +53,11 @@ struct ImportOptions {
     /// Asked about each page that is to be stored; a failure refuses the source. Empty = none is asked about.
     std::function<Result<void>(const RecordPage&)> check_page{};
     /// A BatchStore refuses a source with FailureKind::input that begins with all the records of an earlier batch of
-    /// its folder and has more. Needs check_source.
+    /// its folder and has more.
     bool refuse_grown = false;
+    /// Asked when all pages are stored and check_source has nothing against it; a failure refuses the source. Not asked
+    /// about a source that is refused for its bad rows already.
+    std::function<Result<void>()> check_records{};
     /// import_source() asks it before it makes the job: a failure refuses the source. Default: check_unchanged().
     std::function<Result<void>()> check_source{};
     /// Called now and then; returning false cancels the import, which then fails with FailureKind::stopped.

@@ -125,6 +125,23 @@ std::string canonical_json(const Layout& layout) {
     return json.text();
 }
 
+bool is_same_way(std::string_view one, std::string_view other) {
+    const auto without_profile = [](std::string_view canonical) {
+        constexpr std::string_view key = "\"profile\":\""; // in a text its quotes would be escaped
+        std::string text{canonical};
+        const auto begin = text.find(key);
+        if (begin != std::string::npos) {
+            text.erase(begin, text.find('"', begin + key.size()) - begin);
+        }
+        return text;
+    };
+    return without_profile(one) == without_profile(other);
+}
+
+bool reads_images(std::string_view canonical) {
+    return canonical.find("\"graphics\":[") != std::string_view::npos;
+}
+
 Result<OpenedSource> open_with_layout(const std::filesystem::path& file, const Layout& layout) {
     return with_options(open_source(file, source_options(layout)), folder_of(file), layout);
 }

@@ -15,6 +15,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace linefeed::intake {
@@ -40,6 +41,10 @@ struct Layout {
 
 /// Every option that changes the records but the base, in a fixed form (spool::JobSpec::layout).
 [[nodiscard]] std::string canonical_json(const Layout& layout);
+/// Whether two canonical forms differ at most in the profile: records that come out the same mean the same then.
+[[nodiscard]] bool is_same_way(std::string_view one, std::string_view other);
+/// What records a source gives depends on images besides its own bytes, by the canonical form of its layout.
+[[nodiscard]] bool reads_images(std::string_view canonical);
 
 /// A source that is open, and how its records are made.
 struct OpenedSource {

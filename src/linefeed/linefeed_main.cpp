@@ -2,10 +2,32 @@
 #include "linefeed/definitions.hpp"
 
 #include <iostream>
+#include <string>
 
 namespace {
 
 using linefeed::cli::ExitCode;
+
+/// What is wrong where a command of a group is missing or is none of its commands; empty = something else is.
+std::string missing_command(const CLI::App& app) {
+    const CLI::App* group = &app;
+    std::string path;
+    while (!group->get_subcommands().empty()) {
+        group = group->get_subcommands().back();
+        path += group->get_name() + ' ';
+    }
+    if (group->get_require_subcommand_min() == 0) {
+        return {};
+    }
+    std::string names;
+    for (const CLI::App* const command : group->get_subcommands([](const CLI::App*) { return true; })) {
+        names += (names.empty() ? "" : ", ") + path + command->get_name();
+    }
+    const auto others = app.remaining(true);
+    return (others.empty() ? "a command is missing; there is: "
+                           : '"' + path + others.front() + "\" is no command; there is: ") +
+           names;
+}
 
 ExitCode run(int argc, char** argv) {
     CLI::App app{"linefeed streams the records of a database into the mailing FIFO of Leibinger JET printers: every "
@@ -27,7 +49,8 @@ ExitCode run(int argc, char** argv) {
     } catch (const CLI::Success& success) {
         return static_cast<ExitCode>(app.exit(success));
     } catch (const CLI::ParseError& error) {
-        return linefeed::usage_error(std::string{error.what()} +
+        const std::string missing = missing_command(app);
+        return linefeed::usage_error((missing.empty() ? error.what() : missing) +
                                      " (linefeed --help, or linefeed COMMAND --help, shows the options)");
     }
     for (const linefeed::Command& command : commands) {

@@ -1,6 +1,7 @@
 // Reading a file of the printer, see file_transfer.hpp.
 #include "printer/file_transfer.hpp"
 #include "printer/printer_path.hpp"
+#include "protocol/decimal.hpp"
 
 #include <algorithm>
 #include <optional>
@@ -87,14 +88,23 @@ private:
         }
         const auto* const malformed = std::get_if<protocol::MalformedMessage>(&message);
         damaged_ = malformed != nullptr && malformed->payload.starts_with("FT");
+        if (damaged_) {
+            const std::string_view number = std::string_view{malformed->payload}.substr(2);
+            learn_first(protocol::read_decimal<std::uint32_t>(number.substr(0, number.find('\t'))));
+        }
         return damaged_ ? Heard::done : Heard::ignored;
     }
 
-    /// The manual does not say whether the first block has number 0 or 1.
-    Heard hear(const FileBlock& block) {
-        if (progress_.blocks == 0 && block.intact() && block.number <= 1) {
-            first_ = block.number;
+    /// The manual does not say whether the first block has number 0 or 1: also one that is damaged shows it, and has to
+    /// be asked for by it.
+    void learn_first(std::optional<std::uint32_t> number) {
+        if (progress_.blocks == 0 && number && *number <= 1) {
+            first_ = *number;
         }
+    }
+
+    Heard hear(const FileBlock& block) {
+        learn_first(block.number);
         if (progress_.blocks > 0 && block.intact() && block.number == number()) {
             // Once more, as our word about it was lost or late.
             static_cast<void>(printer_.send(Message{FileAcknowledgement{number(), FileVerdict::ok}}));

@@ -74,6 +74,10 @@ private:
         case FileVerdict::ok:
             attempts_ = 0;
             ++progress_.blocks;
+            if (progress_.blocks > furthest_) {
+                furthest_ = progress_.blocks;
+                begun_ = 0;
+            }
             return options_.on_progress(progress_) || progress_.blocks == progress_.total
                        ? Result<void>{}
                        : failed(FailureKind::stopped, "cancelled");
@@ -130,8 +134,9 @@ private:
     std::optional<FileVerdict> verdict_;
     std::uint32_t first_ = 1;
     std::uint32_t attempts_ = 0;
-    std::uint32_t begun_ = 0; ///< once more, as the printer was silent
-    bool cancelled_ = false;  ///< by the printer
+    std::uint32_t begun_ = 0;    ///< once more, as the printer was silent, since it has come further than ever
+    std::uint32_t furthest_ = 0; ///< so many blocks were done at once
+    bool cancelled_ = false;     ///< by the printer
 };
 
 } // namespace

@@ -139,21 +139,62 @@ Result<std::vector<std::string>> script_lines(std::string_view text, protocol::E
     return lines;
 }
 
+namespace {
+
+/// The name of a job that came as a script.
+constexpr const char* scripted_job = "EXTERN";
+
+/// The lines of the job that is loaded, if that came as a script too: its name will not tell the new one from it.
+Result<std::vector<std::string>> script_under_that_name(PrinterClient& printer) {
+    const auto job = printer.ask<protocol::JobName>(Parameter::JL);
+    if (!job) {
+        return no_answer(printer, "?JL");
+    }
+    return same_path(job->path, scripted_job) ? read_script(printer) : Result<std::vector<std::string>>{};
+}
+
+} // namespace
+
 Result<ScriptSent> send_script(PrinterClient& printer, const std::vector<std::string>& lines, Duration patience) {
     if (auto checked = check_not_printing(printer); !checked) {
         return checked.error();
     }
-    printer.send(Message{ScriptLine{"BEGINLJSCRIPT"}});
-    for (const std::string& line : lines) {
-        printer.send(Message{ScriptLine{line}});
+    const auto before = script_under_that_name(printer);
+    if (!before) {
+        return before.error();
     }
-    printer.send(Message{ScriptLine{"ENDLJSCRIPT"}});
-    auto job = wait_for_job(printer, "EXTERN", patience);
+    bool sent = printer.send(Message{ScriptLine{"BEGINLJSCRIPT"}});
+    for (const std::string& line : lines) {
+        sent = sent && printer.send(Message{ScriptLine{line}});
+    }
+    if (!sent || !printer.send(Message{ScriptLine{"ENDLJSCRIPT"}})) {
+        return Failure{FailureKind::unreachable, printer.settings().address +
+                                                     ": the connection broke within the script, and the job that was "
+                                                     "loaded may be gone: send it again"};
+    }
+    auto job = wait_for_job(printer, scripted_job, patience);
     if (!job) {
         return job.error();
     }
-    const auto read_back = read_script(printer);
-    return read_back ? Result<ScriptSent>{ScriptSent{*std::move(job), *read_back == lines}} : read_back.error();
+    const auto deadline = Clock::now() + patience;
+    bool changed = false;
+    while (true) {
+        const auto status = printer.ask<protocol::MachineStatus>(Parameter::RS);
+        changed = changed || (status && status->job_changed == true);
+        const auto read_back = read_script(printer);
+        if (!read_back) {
+            return read_back.error();
+        }
+        if (*read_back == lines || *read_back != *before || changed) {
+            return ScriptSent{*std::move(job), *read_back == lines};
+        }
+        if (Clock::now() >= deadline) {
+            return Failure{FailureKind::stopped,
+                           printer.settings().address +
+                               ": the printer has not taken the script: " + "it still has the one that it had before"};
+        }
+        std::this_thread::sleep_for(look_again);
+    }
 }
 
 } // namespace linefeed::printer

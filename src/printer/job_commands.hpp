@@ -36,7 +36,8 @@ struct ScriptSent {
 };
 
 /// Sends a script in one piece, waits until the printer names the job EXTERN, and reads it back. The job that was
-/// loaded before is gone. Fails as load_job().
+/// loaded before is gone. Fails as load_job(); FailureKind::stopped also where the printer still has the script that it
+/// had before.
 [[nodiscard]] Result<ScriptSent> send_script(PrinterClient& printer, const std::vector<std::string>& lines,
                                              Duration patience = std::chrono::seconds{3});
 

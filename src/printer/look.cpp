@@ -4,9 +4,22 @@ namespace linefeed::printer {
 
 using protocol::Parameter;
 
+namespace {
+
+template <typename Answer>
+std::optional<Answer> ask_twice(PrinterClient& printer, Parameter what) {
+    auto answer = printer.ask<Answer>(what);
+    return answer || !printer.open() ? answer : printer.ask<Answer>(what);
+}
+
+} // namespace
+
 std::optional<protocol::MachineStatus> ask_status(PrinterClient& printer) {
-    const auto status = printer.ask<protocol::MachineStatus>(Parameter::RS);
-    return status || !printer.open() ? status : printer.ask<protocol::MachineStatus>(Parameter::RS);
+    return ask_twice<protocol::MachineStatus>(printer, Parameter::RS);
+}
+
+std::optional<protocol::VersionInfo> ask_version(PrinterClient& printer) {
+    return ask_twice<protocol::VersionInfo>(printer, Parameter::VS);
 }
 
 Look look_at(const ClientSettings& settings) {
@@ -17,13 +30,14 @@ Look look_at(const ClientSettings& settings) {
         return look;
     }
     PrinterClient& printer = **connected;
-    look.machine = printer.ask<protocol::MachineStatus>(Parameter::RS);
+    look.machine = ask_status(printer);
     if (!look.machine) {
-        look.unreachable = settings.address + ": it takes the connection, but does not answer";
+        look.silent = printer.open();
+        look.unreachable = look.silent ? "" : settings.address + ": it takes the connection, and closes it at once";
         return look;
     }
     if (look.machine->machine != protocol::MachineState::standby) { // there nothing else is answered
-        look.version = printer.ask<protocol::VersionInfo>(Parameter::VS);
+        look.version = ask_version(printer);
         look.counters = printer.ask<protocol::Counters>(Parameter::CC);
     }
     return look;

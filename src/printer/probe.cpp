@@ -3,6 +3,7 @@
 // thing that is set (`=CM`) is put back.
 #include "printer/exchange.hpp"
 #include "printer/json.hpp"
+#include "printer/look.hpp"
 #include "printer/tasks.hpp"
 #include "protocol/printable.hpp"
 #include "protocol/profile.hpp"
@@ -48,7 +49,8 @@ Result<protocol::MailStatus> ask_mailing(PrinterClient& printer) {
     return asked<protocol::MailStatus>(printer, Parameter::SM);
 }
 
-/// Whether `=CM` stays. Whatever happens, the printer is told what stood there before.
+/// Whether `=CM` stays. The printer is told what stood there before, unless what stands there now is somebody else's:
+/// a line that was started meanwhile must not be given another end.
 Result<bool> keeps_stop_at(PrinterClient& printer, RecordNumber before) {
     const RecordNumber other{before == RecordNumber{1} ? 2U : 1U};
     if (auto still = ask_still(printer); !still) { // directly before: somebody may have started it meanwhile
@@ -59,14 +61,28 @@ Result<bool> keeps_stop_at(PrinterClient& printer, RecordNumber before) {
                                                      " before, and may be " + std::to_string(other.value()) +
                                                      " now: look with mailing, and set it with mailing stop-at"};
     };
-    const bool sent = printer.send(protocol::StopAt{other});
+    static_cast<void>(printer.send(protocol::StopAt{other}));
     const auto during = ask_mailing(printer);
-    const bool restored = printer.send(protocol::StopAt{before});
-    const auto after = ask_mailing(printer);
-    if (!sent || !during || !restored || !after) {
+    const auto is_ours = [&](const protocol::MailStatus& mailing) {
+        return mailing.stop_at == other || mailing.stop_at == before;
+    };
+    if (during && !is_ours(*during)) {
+        return not_now(printer, "somebody has set its stop-at meanwhile: probe it when nobody else uses it");
+    }
+    Result<protocol::MailStatus> after = no_answer(printer, Parameter::SM);
+    for (int attempt = 0; attempt < 2 && (!after || after->stop_at == other); ++attempt) {
+        const auto machine = ask_status(printer);
+        if (!machine || machine->machine == MachineState::printing) {
+            return left_behind(machine ? printer.settings().address + ": somebody has started it meanwhile"
+                                       : no_answer(printer, Parameter::RS).message);
+        }
+        static_cast<void>(printer.send(protocol::StopAt{before}));
+        after = ask_mailing(printer);
+    }
+    if (!during || !after) {
         return left_behind(no_answer(printer, Parameter::SM).message);
     }
-    if (after->stop_at != before) {
+    if (after->stop_at == other) {
         return left_behind(printer.settings().address + ": the printer does not take its stop-at back");
     }
     return during->stop_at == other;

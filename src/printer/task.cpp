@@ -56,9 +56,13 @@ bool is_feeding(const Command& command) {
     const auto transfer = [&command](Parameter wanted) {
         return command.group == Group::parameter && command.index == static_cast<std::uint8_t>(wanted);
     };
+    const auto file = [&command](protocol::FileCommand wanted) {
+        return command.group == Group::file && command.index == static_cast<std::uint8_t>(wanted);
+    };
     return action(Action::start_print) || action(Action::stop_print) || action(Action::nozzle_close) ||
            action(Action::motor_close) || action(Action::reload_fonts) || transfer(Parameter::MR) ||
-           transfer(Parameter::CM) || transfer(Parameter::CC) || transfer(Parameter::JL);
+           transfer(Parameter::CM) || transfer(Parameter::CC) || transfer(Parameter::JL) ||
+           file(protocol::FileCommand::FH) || file(protocol::FileCommand::FT); // a file may be the job that prints
 }
 
 /// nullptr = linefeed does not know it.

@@ -43,6 +43,18 @@ Result<void> check_not_printing(const Task& task, PrinterClient& printer) {
     return {};
 }
 
+/// Files go in blocks between the printer and a file here, which is no single answer.
+std::vector<std::string_view> transfers_using(const CommandId& command) {
+    if (command == CommandId{protocol::Group::file, "RF"}) {
+        return {"files get", "backup", "restore"};
+    }
+    constexpr std::array<std::string_view, 3> both_ways{"FH", "FT", "FA"};
+    if (command.group == protocol::Group::file && std::ranges::find(both_ways, command.code) != both_ways.end()) {
+        return {"files get", "files put", "backup", "restore"};
+    }
+    return {};
+}
+
 } // namespace
 
 std::span<const Task> tasks() {
@@ -89,7 +101,7 @@ Result<std::string> carry_out_as_text(const Task& task, PrinterClient& printer, 
 }
 
 std::vector<std::string_view> tasks_using(const CommandId& command) {
-    std::vector<std::string_view> names;
+    std::vector<std::string_view> names = transfers_using(command);
     for (const Task& task : tasks()) {
         if (std::ranges::find(task.uses, command) != task.uses.end()) {
             names.push_back(task.name);

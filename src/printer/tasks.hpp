@@ -32,7 +32,8 @@ namespace linefeed::printer {
 /// The same with its answer as JSON text on one line.
 [[nodiscard]] Result<std::string> carry_out_as_text(const Task& task, PrinterClient& printer, const Order& order);
 
-/// Tasks that reach this command from the command line: names, in the order of the list.
+/// What reaches this command from the command line behind `linefeed printer P`: the transfers of files, which are no
+/// tasks, then tasks in the order of the list.
 [[nodiscard]] std::vector<std::string_view> tasks_using(const CommandId& command);
 
 } // namespace linefeed::printer

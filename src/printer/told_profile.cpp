@@ -1,5 +1,6 @@
 #include "printer/told_profile.hpp"
 
+#include "printer/look.hpp"
 #include "protocol/printable.hpp"
 
 namespace linefeed::printer {
@@ -9,7 +10,7 @@ Result<protocol::Profile> ask_profile(const ClientSettings& settings) {
     if (!printer) {
         return printer.error();
     }
-    const auto version = (*printer)->ask<protocol::VersionInfo>(protocol::Parameter::VS);
+    const auto version = ask_version(**printer);
     const auto profile = version ? protocol::profile_for(version->type, version->firmware) : std::nullopt;
     if (profile) {
         return *profile;

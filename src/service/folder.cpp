@@ -49,12 +49,14 @@ Folder::Folder(const FolderServices& services, const config::FolderSettings& set
     : services_(services)
     , name_(settings.name)
     , printer_(settings.printer)
+    , autostart_(settings.autostart)
     , settings_(drop_settings(settings, all))
     , batches_(services.spool, ticket_for(settings), true, services.counts.records) {
     view_.name = settings.name;
     view_.path = settings.path;
     view_.printer = settings.printer;
     view_.layout = settings.layout;
+    settings_.started_ns = services.started_ns;
     thread_ = std::thread{[this] { serve(); }};
 }
 
@@ -186,6 +188,12 @@ void Folder::adopt(spool::JobId id) {
     const auto adopted = job && *job ? batches_.adopt(**job) : Result<bool>{false};
     if (!job || !adopted) {
         event(event_kind::storage_failed, job ? adopted.error().message : job.error().message, id);
+    }
+}
+
+void Folder::importing(const std::string& name, bool left_over) {
+    if (left_over && autostart_) {
+        services_.on_left_over(printer_, "folder " + name_ + ": " + name + " came before the service was started");
     }
 }
 

@@ -32,6 +32,10 @@ struct FolderServices {
     IntakeCounts& counts;
     /// A job has been put into the queue of that printer; called on the folder's thread.
     std::function<void(const std::string& printer)> on_queued;
+    std::int64_t started_ns = 0; ///< when the service was started, by the clock of files
+    /// A file that came before the service was started becomes a job that may start by itself, once it is in
+    /// the queue of that printer; called before it is, on the folder's thread.
+    std::function<void(const std::string& printer, const std::string& words)> on_left_over;
 };
 
 /// Destroying it breaks off what it imports: it is taken up again at the next start.
@@ -58,11 +62,13 @@ private:
 
     void finished(const intake::DropReport& report) override;
     void note(const std::string& name, const std::string& words) override;
+    void importing(const std::string& name, bool left_over) override;
     [[nodiscard]] bool progress(const std::string& name, std::uint64_t rows, double fraction) override;
 
     FolderServices services_;
     std::string name_;
     std::string printer_;
+    bool autostart_;
     intake::DropSettings settings_;
     Batches batches_;
     daemon::EventSignal wake_;

@@ -46,7 +46,8 @@ SharedSettings Line::settings() const {
     return settings_;
 }
 
-Result<void> Line::start(spool::JobId job, StartedBy who) {
+Result<void> Line::start(spool::JobId job, StartedBy who, const std::function<Result<void>()>& write_down) {
+    bool was_held = false;
     {
         const std::lock_guard lock{mutex_};
         if (held_ && who == StartedBy::itself) {
@@ -58,24 +59,41 @@ Result<void> Line::start(spool::JobId job, StartedBy who) {
                            "printer " + printer_ +
                                (active_ ? " is at " + name_of(*active_) + ": stop it first" : " is being taken away")};
         }
-        held_ = false;
+        was_held = std::exchange(held_, false);
         active_ = job;
         ++orders_;
-        begun_ = false;
+        written_down_ = false;
         stop_requested_ = false;
         supply_low_ = false;
         records_.reset();
     }
+    const auto written = write_down();
+    {
+        const std::lock_guard lock{mutex_};
+        written_down_ = written.has_value();
+        if (!written) {
+            active_.reset();
+            held_ = held_ || was_held;
+        }
+    }
     changed_.notify_all();
-    return {};
+    return written;
 }
 
 void Line::request_stop() {
-    const std::lock_guard lock{mutex_};
-    stop_requested_ = true;
-    if (run_ != nullptr) {
-        run_->request_stop();
+    {
+        const std::lock_guard lock{mutex_};
+        stop_requested_ = true;
+        if (run_ != nullptr) {
+            run_->request_stop();
+        }
     }
+    changed_.notify_all(); // a job that waits for a reservation waits no longer
+}
+
+void Line::hold_queue() {
+    const std::lock_guard lock{mutex_};
+    held_ = true;
 }
 
 void Line::hold() {
@@ -104,7 +122,9 @@ std::optional<std::chrono::steady_clock::time_point> Line::next_look() const {
     if (own == nullptr || own->watch_interval == Duration{0}) {
         return std::nullopt;
     }
-    return looked_at_ ? *looked_at_ + own->watch_interval : std::chrono::steady_clock::now();
+    constexpr std::uint32_t doublings_at_most = 3; // whoever refuses is busy with somebody else, or switched off
+    const auto pause = own->watch_interval * (1U << std::min(failed_looks_, doublings_at_most));
+    return looked_at_ ? *looked_at_ + pause : std::chrono::steady_clock::now();
 }
 
 void Line::serve() {
@@ -113,7 +133,8 @@ void Line::serve() {
         if (!active_ && closing_) {
             return;
         }
-        if (active_ && reserved_ > 0 && !closing_) {
+        const bool kept = reserved_ > 0 && !closing_ && !stop_requested_;
+        if (active_ && (!written_down_ || kept)) {
             changed_.wait(lock);
             continue;
         }
@@ -130,13 +151,13 @@ void Line::serve() {
             }
             continue;
         }
-        begun_ = true;
         const spool::JobId job = *active_;
         lock.unlock();
         print(job);
         lock.lock();
         active_.reset();
         looked_at_.reset();
+        failed_looks_ = 0;
         link_.reset();
         const bool stopped = stop_requested_; // at its very end, perhaps: the next job does not follow then either
         lock.unlock();

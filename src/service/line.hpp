@@ -7,7 +7,6 @@
 #include "daemon/job_run.hpp"
 #include "daemon/line_use.hpp"
 #include "daemon/operations.hpp"
-#include "daemon/other_jobs.hpp"
 #include "daemon/preflight.hpp"
 #include "daemon/printer_watch.hpp"
 #include "printer/printer_commands.hpp"
@@ -70,13 +69,16 @@ public:
     // Any thread; those that talk to the printer wait for its answers
     /// For the next start.
     void use(SharedSettings settings);
-    /// Begins to arm the job, which has a ticket of this printer that says so. FailureKind::stopped if the line is
-    /// busy, or held and nobody has asked for it.
-    [[nodiscard]] Result<void> start(spool::JobId job, StartedBy who);
+    /// Begins to arm the job as soon as `write_down` has written a ticket of this printer that says so; until then
+    /// it is on the line already, for all who look. FailureKind::stopped if the line is busy, or held and nobody has
+    /// asked for it; or as `write_down` fails.
+    [[nodiscard]] Result<void> start(spool::JobId job, StartedBy who, const std::function<Result<void>()>& write_down);
     /// Begins to stop what is armed or printed.
     void request_stop();
     /// As request_stop(); and from now on nothing starts by itself until an operator starts something.
     void hold();
+    /// Nothing starts by itself until an operator starts something; what is on the line goes on.
+    void hold_queue();
     [[nodiscard]] bool held() const;
     /// From now on nothing is started, nor the printer looked at. Does not wait.
     void close();
@@ -107,8 +109,8 @@ public:
     [[nodiscard]] Result<void> talk(bool alone, const std::function<Result<void>(printer::PrinterClient&)>& words);
     /// Holds the panel for so long from now, or releases it.
     [[nodiscard]] Result<void> hold_panel(std::optional<Duration> time);
-    /// That of the settings; an automatic one as the printer has told, which is asked if it has not yet. Automatic
-    /// still if it does not tell.
+    /// That of the settings; an automatic one as the printer has told, which is asked if it has not yet and no job is
+    /// on the line. Automatic still if it does not tell.
     [[nodiscard]] protocol::Profile profile();
     [[nodiscard]] const std::string& printer() const { return printer_; }
     [[nodiscard]] const daemon::LineMeters& meters() const { return meters_; }
@@ -125,17 +127,22 @@ private:
     // line_printer.cpp: the printer besides printing
     [[nodiscard]] Result<std::shared_ptr<void>> reserve();
     [[nodiscard]] std::shared_ptr<void> undisturbed();
-    [[nodiscard]] protocol::Profile known_profile(const config::PrinterSettings& own) const;
     [[nodiscard]] Result<printer::ClientSettings> client_settings() const;
+
+    // line_look.cpp: which machine it is, and what state it is in
+    [[nodiscard]] protocol::Profile known_profile(const config::PrinterSettings& own) const;
+    [[nodiscard]] std::string known_serial_number() const;
     /// What a look at it is for: a job that is to start there, or nothing yet.
     struct Purpose {
         bool may_be_printing = false;
-        std::optional<protocol::EscapeMode> record_escapes{};
+        std::function<bool()> records_have_escapes{};
     };
     [[nodiscard]] std::vector<daemon::Finding> look_at_printer(const printer::ClientSettings& client,
                                                                const Purpose& purpose);
+    [[nodiscard]] std::optional<protocol::VersionInfo> look_for_identity(const printer::ClientSettings& client);
     void glance();
     void learn_identity(const std::optional<protocol::VersionInfo>& version);
+    [[nodiscard]] std::vector<std::string> printers_of_same_machine(const std::string& serial_number);
     void hear(const daemon::PreflightFacts& facts);
     void hear(const printer::Look& look);
     void hear(const daemon::RunProgress& progress);
@@ -143,16 +150,20 @@ private:
     // line_printing.cpp: from the order to its end
     void print(spool::JobId job);
     [[nodiscard]] Result<Ending> print_runs(spool::JobId job);
-    [[nodiscard]] Result<std::optional<daemon::Hindrance>> ask_about_others(spool::JobId job,
-                                                                            const daemon::JobRunSettings& settings);
-    void take_note_of(spool::JobId other);
+    [[nodiscard]] bool is_stop_requested() const;
     [[nodiscard]] Result<daemon::JobRunSettings> run_settings(const spool::Job& job);
-    [[nodiscard]] Result<std::optional<Ending>> check_printer(const spool::Job& job, bool may_be_printing);
     [[nodiscard]] Ending run(const JobFacts& facts, RecordRange wanted, const std::optional<daemon::OpenIssue>& open,
                              daemon::JobRunSettings& settings, daemon::NoisePatience& patience);
     void watch(daemon::JobRun& run, spool::JobId job);
     void take_notice(const feeder::Notice& notice, spool::JobId job);
     void conclude(const Ending& ending);
+
+    // line_checks.cpp: what comes before a run
+    [[nodiscard]] Result<std::optional<Ending>> ask_about_others(const spool::Job& job);
+    void take_note_of(spool::JobId other);
+    [[nodiscard]] Result<std::optional<Ending>> check_identity(const spool::Job& job);
+    [[nodiscard]] Result<std::optional<Ending>> check_printer(const spool::Job& job, bool may_be_printing);
+    [[nodiscard]] std::optional<Ending> tell(const std::vector<daemon::Finding>& findings, spool::JobId job);
 
     LineServices services_;
     std::string printer_;
@@ -164,7 +175,7 @@ private:
     SharedSettings settings_;
     std::optional<spool::JobId> active_; ///< ordered, or under way
     std::uint64_t orders_ = 0;           ///< so many so far
-    bool begun_ = false;                 ///< the thread has taken the order
+    bool written_down_ = false;          ///< the order may be carried out
     bool checking_ = false;              ///< preflight
     std::uint32_t reserved_ = 0; ///< for so many commands that no job may meet: the next one waits for their end
     std::uint32_t talks_ = 0;    ///< so many go on that somebody has asked for: no glance at the printer meanwhile
@@ -186,6 +197,7 @@ private:
     std::string known_serial_number_; ///< of the machine that jobs may start on; empty = not known yet
     std::optional<std::chrono::steady_clock::time_point> looked_at_; ///< as idle; absent = never, or in use since
     std::optional<daemon::LinkState> link_;                          ///< by the last look; absent as looked_at_
+    std::uint32_t failed_looks_ = 0;                                 ///< in a row
 
     std::shared_ptr<printer::PanelHold> panel_;
 

@@ -1,11 +1,8 @@
 // From the order to print a job to the reason why it ended. The same steps as `linefeed print`, without a terminal:
 // what an operator has to decide is left to him.
 #include "daemon/events.hpp"
-#include "daemon/other_jobs.hpp"
 #include "daemon/record_text.hpp"
 #include "service/line.hpp"
-
-#include <algorithm>
 
 namespace linefeed::service {
 
@@ -38,17 +35,6 @@ Result<Before> look(SpoolAccess& access, spool::JobId job) {
 RecordRange wanted_records(const Before& before) {
     const RecordRange all = before.facts.job.records;
     return before.open ? RecordRange::closed(all.first(), before.open->run_range.last()) : all;
-}
-
-/// The nearest word for what the look at the printer has found.
-OutcomeCode outcome_of(const daemon::Finding& finding) {
-    if (finding.check == "reachable") {
-        return OutcomeCode::unreachable;
-    }
-    if (finding.check == "cover") {
-        return OutcomeCode::cover_open;
-    }
-    return finding.check == "errors" ? OutcomeCode::error_pending : OutcomeCode::not_ready;
 }
 
 } // namespace
@@ -91,19 +77,18 @@ Result<Ending> Line::print_runs(spool::JobId job) {
     if (!before) {
         return before.error();
     }
-    auto settings = run_settings(before->facts.job);
-    if (!settings) {
-        return settings.error();
+    if (is_stop_requested()) { // before anything was said to the printer, or while it was kept for something else
+        return Ending{job, {.code = OutcomeCode::stop_requested, .issued = false}, {}};
     }
-    const auto hindrance = ask_about_others(job, *settings);
-    if (!hindrance) {
-        return hindrance.error();
-    }
-    if (*hindrance) {
-        return Ending{job, (*hindrance)->outcome, (*hindrance)->detail};
+    if (auto hindered = ask_about_others(before->facts.job); !hindered || *hindered) {
+        return hindered ? Result<Ending>{std::move(**hindered)} : hindered.error();
     }
     if (auto hindered = check_printer(before->facts.job, before->open.has_value()); !hindered || *hindered) {
         return hindered ? Result<Ending>{std::move(**hindered)} : hindered.error();
+    }
+    auto settings = run_settings(before->facts.job); // the printer may have told its profile just now
+    if (!settings) {
+        return settings.error();
     }
     Ending ending{job, {.code = OutcomeCode::nothing_to_print, .issued = false}, {}};
     daemon::NoisePatience patience;
@@ -125,12 +110,9 @@ Result<Ending> Line::print_runs(spool::JobId job) {
             ending.outcome.code = OutcomeCode::finished;
             return ending;
         }
-        {
-            const std::lock_guard lock{mutex_};
-            if (stop_requested_) {
-                ending.outcome.code = OutcomeCode::stop_requested;
-                return ending;
-            }
+        if (is_stop_requested()) {
+            ending.outcome.code = OutcomeCode::stop_requested;
+            return ending;
         }
         ending = run(before->facts, wanted_records(*before), before->open, *settings, patience);
         const bool goes_on =
@@ -143,87 +125,9 @@ Result<Ending> Line::print_runs(spool::JobId job) {
     }
 }
 
-/// What other jobs may still have in the printer is found out before it is flushed.
-Result<std::optional<daemon::Hindrance>> Line::ask_about_others(spool::JobId job,
-                                                                const daemon::JobRunSettings& settings) {
-    std::vector<spool::JobId> asked;
-    auto hindrance = daemon::settle_other_jobs(
-        services_.threads, services_.spool, job, settings, [&](JobRun& run, spool::JobId other) {
-            event(event_kind::printer_notice, other, "may have records in this printer: asking how far it came");
-            asked.push_back(other);
-            watch(run, job);
-        });
-    for (const spool::JobId other : asked) {
-        take_note_of(other);
-    }
-    return hindrance;
-}
-
-/// The printer has been asked about a job that was not over: now it may be, or nobody knows.
-void Line::take_note_of(spool::JobId other) {
-    const auto phase = services_.access.write([other](spool::Spool& spool) -> Result<daemon::JobPhase> {
-        const auto facts = read_facts(spool, other);
-        if (!facts) {
-            return facts.error();
-        }
-        const daemon::JobPhase now = phase_of(*facts, {});
-        if (!facts->ticket || (now != daemon::JobPhase::finished && now != daemon::JobPhase::in_doubt)) {
-            return now;
-        }
-        spool::Ticket ticket = *facts->ticket;
-        const bool finished = now == daemon::JobPhase::finished;
-        ticket.begun = !finished;
-        ticket.message = finished ? "" : "the printer was asked, and does not know either: say which are printed";
-        if (finished) {
-            ticket.place.reset();
-        }
-        auto written = spool.write_ticket(ticket);
-        return written ? Result<daemon::JobPhase>{now} : written.error();
-    });
-    if (!phase) {
-        event(event_kind::storage_failed, other, phase.error().message);
-    } else if (*phase == daemon::JobPhase::finished) {
-        event(event_kind::job_finished, other, "every record was printed before this job was interrupted");
-    } else if (*phase == daemon::JobPhase::in_doubt) {
-        event(event_kind::job_in_doubt, other, "nobody knows which of its last records are printed: say which are");
-    }
-}
-
-/// The look at the printer before the start; each finding that is not good is told. What stands in the way; absent =
-/// nothing does.
-Result<std::optional<Ending>> Line::check_printer(const spool::Job& job, bool may_be_printing) {
-    const auto client = client_settings();
-    if (!client) {
-        return client.error();
-    }
-    {
-        const std::lock_guard lock{mutex_};
-        checking_ = true;
-    }
-    const std::vector<daemon::Finding> findings = look_at_printer(
-        *client, {.may_be_printing = may_be_printing, .record_escapes = daemon::record_format(job).escapes});
-    {
-        const std::lock_guard lock{mutex_};
-        checking_ = false;
-    }
-    std::optional<Ending> ending;
-    for (const daemon::Finding& finding : findings) {
-        const std::string words = finding.words + (finding.advice.empty() ? "" : ". " + finding.advice);
-        switch (finding.severity) {
-        case daemon::Severity::ok:
-            break;
-        case daemon::Severity::warning:
-            event(event_kind::printer_warning, job.id, words);
-            break;
-        case daemon::Severity::problem:
-            event(event_kind::printer_error, job.id, words);
-            if (!ending) {
-                ending = Ending{job.id, {.code = outcome_of(finding), .issued = false}, words, true};
-            }
-            break;
-        }
-    }
-    return ending;
+bool Line::is_stop_requested() const {
+    const std::lock_guard lock{mutex_};
+    return stop_requested_;
 }
 
 Ending Line::run(const JobFacts& facts, RecordRange wanted, const std::optional<OpenIssue>& open,
@@ -262,6 +166,9 @@ void Line::watch(JobRun& run, spool::JobId job) {
     }
     const std::lock_guard lock{mutex_};
     hear(run.progress());
+    if (run.progress().machine) {
+        watch_.heard(*run.progress().machine);
+    }
     run_ = nullptr;
 }
 

@@ -14,6 +14,7 @@ Service::Service(ServiceOptions options, spool::Spool spool)
     , take_over_(std::move(options.take_over))
     , version_(std::move(options.version))
     , started_ns_(daemon::wall_clock_ns())
+    , files_since_ns_(daemon::file_clock_ns())
     , spool_(std::move(spool))
     , feed_(options.settings.real_time)
     , store_(spool_)
@@ -105,6 +106,9 @@ void Service::open_lines() {
             continue;
         }
         const auto past = past_of(printer);
+        if (!past) {
+            event(event_kind::storage_failed, printer.name, {}, past.error().message);
+        }
         auto opened = std::make_shared<Line>(services, printer.name, now, past ? *past : Line::Past{true, {}});
         const std::lock_guard lock{parts_mutex_};
         lines_.emplace(printer.name, std::move(opened));
@@ -112,8 +116,12 @@ void Service::open_lines() {
 }
 
 void Service::open_folders() {
-    const FolderServices services{access_, events_, counts_,
-                                  [this](const std::string& printer) { look_for_work(printer); }};
+    const FolderServices services{access_,
+                                  events_,
+                                  counts_,
+                                  [this](const std::string& printer) { look_for_work(printer); },
+                                  files_since_ns_,
+                                  [this](const std::string& printer, const std::string& words) { leave_to_a_person(printer, words); }};
     const std::lock_guard lock{parts_mutex_};
     if (ending_ || !folders_.empty()) {
         return; // opened by a reload already

@@ -177,11 +177,13 @@ private:
     [[nodiscard]] Result<void> check_open_records(const JobFacts& facts, const std::string& printer);
     [[nodiscard]] Result<void> check_startable(const JobFacts& facts);
     [[nodiscard]] Result<void> put_into_queue(spool::JobId id, const std::string& printer);
-    [[nodiscard]] Result<void> check_fits(const JobFacts& facts, const std::string& printer) const;
+    [[nodiscard]] Result<void> check_fits(const JobFacts& facts, const std::string& printer);
     [[nodiscard]] Result<JobFacts> facts_of_idle(spool::JobId id);
 
     /// Starts the next job of the printer's queue if that may start by itself.
     void look_for_work(const std::string& printer);
+    /// From now on nothing of its queue starts by itself until a person starts something. `words` = why.
+    void leave_to_a_person(const std::string& printer, const std::string& words);
     [[nodiscard]] Result<std::optional<spool::JobId>> next_by_itself(const std::string& printer);
     void hold_back(spool::JobId id, const Failure& why);
 
@@ -189,6 +191,7 @@ private:
     std::function<Result<void>(const config::Settings&)> take_over_;
     std::string version_;
     std::int64_t started_ns_ = 0;
+    std::int64_t files_since_ns_ = 0; ///< the start once more, by the clock of files
     std::string real_time_;
 
     spool::Spool spool_; ///< the store thread's from here on

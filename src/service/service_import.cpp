@@ -100,7 +100,8 @@ Result<ImportAnswer> import_file(const std::filesystem::path& file, const intake
     if (!known) {
         return known.error();
     }
-    if (*known) {
+    const bool images_may_differ = *known && intake::reads_images(spec->layout);
+    if (*known && !images_may_differ) {
         const auto adopted = batches.adopt((*known)->job);
         return adopted ? Result<ImportAnswer>{ImportAnswer{(*known)->job.id, true, (*known)->job.import_report}}
                        : adopted.error();

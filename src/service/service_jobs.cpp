@@ -50,7 +50,11 @@ Result<std::vector<JobView>> Service::jobs(const daemon::JobFilter& filter) {
                     return facts.error();
                 }
                 const auto at = live.find(facts->job.id);
-                auto view = job_views.view(*facts, at == live.end() ? std::nullopt : std::optional{at->second});
+                const bool begun = facts->ticket && facts->ticket->begun; // perhaps since we looked at the lines
+                const auto phase = at != live.end() ? std::optional{at->second}
+                                   : begun          ? live_phase(facts->job.id)
+                                                    : std::nullopt;
+                auto view = job_views.view(*facts, phase);
                 if (!view) {
                     return view.error();
                 }
@@ -83,7 +87,7 @@ Result<std::optional<JobView>> Service::job(spool::JobId id) {
             return facts.error();
         }
         daemon::JobViews job_views{spool};
-        auto view = job_views.view(*facts, live);
+        auto view = job_views.view(*facts, live ? live : live_phase(id)); // it may have been started in between
         return view ? Result<std::optional<JobView>>{std::move(*view)} : view.error();
     });
 }

@@ -94,15 +94,21 @@ Result<void> Service::check_open_records(const JobFacts& facts, const std::strin
                  facts.printer());
 }
 
-Result<void> Service::check_fits(const JobFacts& facts, const std::string& printer) const {
+Result<void> Service::check_fits(const JobFacts& facts, const std::string& printer) {
     const config::PrinterSettings* const own = settings()->printer(printer);
     if (own == nullptr) {
         return wrong("printer " + printer + " is not in the settings any more: queue the job at another");
     }
-    // Records of firmware without escapes hold nothing that would need any: they mean the same everywhere. Of an
-    // automatic profile the printer tells at the start.
-    if (daemon::record_format(facts.job).escapes == protocol::EscapeMode::backslash &&
-        own->profile.escapes == protocol::EscapeMode::none && !protocol::is_automatic(own->profile)) {
+    // Records without escapes mean the same everywhere. Of an automatic profile the printer tells at the start.
+    if (daemon::record_format(facts.job).escapes != protocol::EscapeMode::backslash ||
+        own->profile.escapes != protocol::EscapeMode::none || protocol::is_automatic(own->profile)) {
+        return {};
+    }
+    const auto escapes = access_.read([&](spool::Spool& spool) { return spool.has_escapes(facts.job.id); });
+    if (!escapes) {
+        return escapes.error();
+    }
+    if (*escapes) {
         return wrong(name_of(facts.job.id) + " was imported for another firmware than that of " + printer + " (" +
                      std::string{own->profile.name} + "): import its file again for this printer");
     }
@@ -132,22 +138,21 @@ Result<void> Service::begin(spool::JobId id, StartedBy who) {
         return Failure{FailureKind::stopped,
                        "printer " + facts->printer() + " is at " + name_of(active->job) + ": stop it first"};
     }
-    auto written = access_.write([&](spool::Spool& spool) -> Result<void> {
-        spool::Ticket ticket = facts->ticket_or_new();
-        const auto first = spool.first_place(ticket.printer);
-        if (!first) {
-            return first.error();
-        }
-        ticket.place = *first;
-        ticket.begun = true;
-        ticket.message = interrupted_words;
-        auto done = spool.write_ticket(ticket);
-        return done && who == StartedBy::person ? spool.hold_printer(ticket.printer, false) : done;
-    });
-    if (!written) {
-        return written;
-    }
-    if (auto started = (*line)->start(id, who); !started) {
+    const auto write_down = [&] {
+        return access_.write([&](spool::Spool& spool) -> Result<void> {
+            spool::Ticket ticket = facts->ticket_or_new();
+            const auto first = spool.first_place(ticket.printer);
+            if (!first) {
+                return first.error();
+            }
+            ticket.place = *first;
+            ticket.begun = true;
+            ticket.message = interrupted_words;
+            auto done = spool.write_ticket(ticket);
+            return done && who == StartedBy::person ? spool.hold_printer(ticket.printer, false) : done;
+        });
+    };
+    if (auto started = (*line)->start(id, who, write_down); !started) {
         return started;
     }
     event(event_kind::job_started, facts->printer(), id, "its start has begun");
@@ -328,6 +333,17 @@ void Service::look_for_work(const std::string& printer) {
         audited(Caller{"linefeedd"}, {"start", name_of(**next)}, [&] { return begin(**next, StartedBy::itself); });
     if (!begun) {
         hold_back(**next, begun.error());
+    }
+}
+
+void Service::leave_to_a_person(const std::string& printer, const std::string& words) {
+    const std::lock_guard lock{orders_};
+    const config::PrinterSettings* const own = settings()->printer(printer);
+    const LinePtr at = line(printer);
+    if (own != nullptr && own->queue.autostart && at && !at->held()) {
+        at->hold_queue();
+        event(event_kind::printer_notice, printer, {},
+              words + ": nothing starts by itself until somebody starts a job");
     }
 }
 

@@ -53,7 +53,6 @@ struct JobImport::State {
     [[nodiscard]] Result<void> finish(ImportState state, std::string import_report);
     [[nodiscard]] Result<void> write_waiting();
     [[nodiscard]] Result<void> write_page(const RecordPage& page);
-    [[nodiscard]] Result<void> write_head(const RecordPage& page);
     [[nodiscard]] Result<void> write_job();
 };
 
@@ -100,16 +99,6 @@ Result<void> JobImport::State::write_page(const RecordPage& page) {
         .run();
 }
 
-Result<void> JobImport::State::write_head(const RecordPage& page) {
-    auto statement = spool->database->prepare("INSERT INTO job_heads (job, head) VALUES (?1, ?2)");
-    if (!statement) {
-        return statement.error();
-    }
-    return statement->bind(1, static_cast<std::int64_t>(job.id))
-        .bind(2, sha256_hex(page.slice({page.first, RecordCount{1}})))
-        .run();
-}
-
 Result<void> JobImport::State::write_job() {
     if (auto written = new_source ? spool->write_source(job.id, job.spec.source) : Result<void>{}; !written) {
         return written;
@@ -139,7 +128,7 @@ Result<void> JobImport::State::write_waiting() {
             return done;
         }
         if (page.first == job.spec.base.next()) {
-            if (auto done = write_head(page); !done) {
+            if (auto done = spool->write_head(job.id, page); !done) {
                 return done;
             }
         }

@@ -147,6 +147,9 @@ Result<Spool> Spool::open(const std::filesystem::path& path, SpoolOptions option
     if (auto done = state->remove_unfinished_imports(); !done) {
         return state->fatal(done.error());
     }
+    if (auto done = state->write_missing_heads(); !done) {
+        return state->fatal(done.error());
+    }
     if (auto done = state->load_end_of_chain(); !done) {
         return done.error();
     }

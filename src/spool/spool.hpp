@@ -98,10 +98,9 @@ public:
     [[nodiscard]] Result<std::optional<Job>> job(JobId id);
     /// The ready job that was imported from exactly this source with this layout.
     [[nodiscard]] Result<std::optional<Job>> find_by_source(const JobSpec& spec);
-    /// The ready jobs with this content and layout, whatever file they came from, oldest first.
-    [[nodiscard]] Result<std::vector<Job>> find_by_content(const std::string& content_sha256,
-                                                           const std::string& layout);
-    /// The ready jobs whose first record has this frame, oldest first; none that were imported before schema 4.
+    /// The ready jobs with this content, whatever file they came from and however it was read, oldest first.
+    [[nodiscard]] Result<std::vector<Job>> find_by_content(const std::string& content_sha256);
+    /// The ready jobs whose first record has this frame, oldest first.
     [[nodiscard]] Result<std::vector<Job>> find_by_first_record(std::string_view frame);
     /// The ready jobs that were imported from this path, oldest first.
     [[nodiscard]] Result<std::vector<Job>> find_by_path(const std::string& path);
@@ -134,7 +133,12 @@ public:
 
     /// The serial number of the machine that stands behind the name of a printer; empty = not known yet.
     [[nodiscard]] Result<std::string> serial_number(const std::string& printer);
+    /// What an operator has accepted.
     [[nodiscard]] Result<void> write_serial_number(const std::string& printer, const std::string& serial_number);
+    /// What the first machine says that answers: kept only if nothing is known yet. The one that stands then.
+    [[nodiscard]] Result<std::string> learn_serial_number(const std::string& printer, const std::string& serial_number);
+    /// The names of all printers behind which that machine stands.
+    [[nodiscard]] Result<std::vector<std::string>> printers_of_machine(const std::string& serial_number);
     /// A place before all others of the printer's queue, or behind them.
     [[nodiscard]] Result<std::int64_t> first_place(const std::string& printer);
     [[nodiscard]] Result<std::int64_t> last_place(const std::string& printer);
@@ -162,6 +166,8 @@ public:
     // Pages
     /// The page that holds `number`, its checksum verified.
     [[nodiscard]] Result<RecordPage> read_page(JobId id, RecordNumber number);
+    /// Whether any record of the job has a `\` in it, which is there only to escape. Reads them all if none has.
+    [[nodiscard]] Result<bool> has_escapes(JobId id);
 
     // Ledger
     /// Starts a run: appends run_started (and with it reserves the RunId), durable at return.

@@ -128,14 +128,14 @@ Result<std::optional<Job>> Spool::find_by_source(const JobSpec& spec) {
     return found->empty() ? std::optional<Job>{} : std::optional{std::move(found->front())};
 }
 
-Result<std::vector<Job>> Spool::find_by_content(const std::string& content_sha256, const std::string& layout) {
+Result<std::vector<Job>> Spool::find_by_content(const std::string& content_sha256) {
     static const std::string sql =
-        std::string{select_jobs} + "WHERE content_sha256 = ?1 AND layout = ?2 AND state = 'ready' ORDER BY id";
+        std::string{select_jobs} + "WHERE content_sha256 = ?1 AND state = 'ready' ORDER BY id";
     auto statement = state_->database->prepare(sql.c_str());
     if (!statement) {
         return statement.error();
     }
-    return read_jobs(statement->bind(1, content_sha256).bind(2, layout), state_->database->path());
+    return read_jobs(statement->bind(1, content_sha256), state_->database->path());
 }
 
 Result<std::vector<Job>> Spool::find_by_source_bytes(const std::string& sha256) {

@@ -44,4 +44,13 @@ Result<RecordPage> Spool::read_page(JobId id, RecordNumber number) {
     return state_->read_page(id, number);
 }
 
+Result<bool> Spool::has_escapes(JobId id) {
+    auto statement =
+        state_->database->prepare("SELECT 1 FROM pages WHERE job = ?1 AND instr(frames, x'5C') > 0 LIMIT 1");
+    if (!statement) {
+        return statement.error();
+    }
+    return statement->bind(1, static_cast<std::int64_t>(id)).step();
+}
+
 } // namespace linefeed::spool

@@ -45,6 +45,10 @@ struct Spool::State {
 
     [[nodiscard]] Result<RecordPage> read_page(JobId id, RecordNumber number);
     [[nodiscard]] Result<void> write_source(JobId id, const SourceFingerprint& source);
+    /// Writes down the first record of a job, for find_by_first_record().
+    [[nodiscard]] Result<void> write_head(JobId id, const RecordPage& page);
+    /// The same of all jobs of which it was not done when they were imported.
+    [[nodiscard]] Result<void> write_missing_heads();
     /// Whether any record of the job was ever granted to a run.
     [[nodiscard]] Result<bool> stands_in_ledger(JobId id);
     /// Removes imports that were broken off before anything of them was printed.

@@ -177,6 +177,41 @@ Result<void> Spool::write_serial_number(const std::string& printer, const std::s
     return {};
 }
 
+Result<std::string> Spool::learn_serial_number(const std::string& printer, const std::string& serial_number) {
+    if (auto writable = state_->check_writable(); !writable) {
+        return writable.error();
+    }
+    auto statement =
+        state_->database->prepare("INSERT OR IGNORE INTO printers (printer, serial_number) VALUES (?1, ?2)");
+    if (!statement) {
+        return statement.error();
+    }
+    if (auto done = statement->bind(1, printer).bind(2, serial_number).run(); !done) {
+        return state_->failed_write(done.error());
+    }
+    return this->serial_number(printer);
+}
+
+Result<std::vector<std::string>> Spool::printers_of_machine(const std::string& serial_number) {
+    auto statement =
+        state_->database->prepare("SELECT printer FROM printers WHERE serial_number = ?1 ORDER BY printer");
+    if (!statement) {
+        return statement.error();
+    }
+    statement->bind(1, serial_number);
+    std::vector<std::string> printers;
+    while (true) {
+        const auto more = statement->step();
+        if (!more) {
+            return more.error();
+        }
+        if (!*more) {
+            return printers;
+        }
+        printers.emplace_back(statement->text(0));
+    }
+}
+
 namespace {
 
 /// The place of one end of a queue, 0 if it is empty.

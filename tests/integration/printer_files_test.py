@@ -121,7 +121,9 @@ class Files(harness.TestCase):
         png = self.directory / "p.png"
         self.done("preview", "--png", png, "--scale", "1")
         self.assertEqual(rows, png_dots(png.read_bytes()))
-        self.assertEqual(rows[0][:160], self.done("preview", "--ascii").out.splitlines()[0])
+        self.assertEqual(rows[0], self.done("preview", "--ascii").out.splitlines()[0], "no line is broken where there is no terminal")
+        for words in (("files", "frob"), ("files",), ("script", "frob", "x")):
+            self.assert_one_clear_line(2, self.linefeed(*words), f"{words[0]} get")
 
     def test_while_it_prints(self):
         folder, records = self.directory / "saved", harness.names(1500)

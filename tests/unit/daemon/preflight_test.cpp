@@ -36,7 +36,8 @@ PreflightFacts healthy() {
 class PreflightTest : public testing::Test {
 protected:
     [[nodiscard]] std::vector<Finding> findings() const {
-        return judge(facts_, {settings_, printer_, known_serial_, may_be_printing_, record_escapes_});
+        return judge(facts_,
+                     {settings_, printer_, known_serial_, may_be_printing_, records_have_escapes_, same_machine_});
     }
     /// That of this check; one line: severity, words and advice.
     [[nodiscard]] std::string finding(std::string_view check) const {
@@ -63,7 +64,8 @@ protected:
     config::PrinterSettings printer_;
     std::string known_serial_;
     bool may_be_printing_ = false;
-    std::optional<protocol::EscapeMode> record_escapes_;
+    std::function<bool()> records_have_escapes_;
+    std::vector<std::string> same_machine_;
 };
 
 TEST_F(PreflightTest, shouldFindNothingAmissWithAHealthyPrinter) {
@@ -135,13 +137,29 @@ TEST_F(PreflightTest, shouldSayWhichProfileAnAutomaticOneIs) {
 
 TEST_F(PreflightTest, shouldStartNoRecordsWithEscapesWhereThePrinterKnowsNone) {
     printer_.profile = *protocol::profile_by_name("auto");
-    record_escapes_ = protocol::EscapeMode::backslash;
+    records_have_escapes_ = [] { return true; };
     EXPECT_EQ(finding("profile"), "ok: auto: jet3up, since it is a JET3up, firmware V62.0.9.0");
     facts_.version->type = "JET3";
     EXPECT_EQ(finding("profile"), "problem: auto: jet3, which knows no escapes; the job was imported for firmware that "
                                   "does, and ^ and \\ would come out wrong - Import its file again for this printer.");
-    record_escapes_ = protocol::EscapeMode::none;
+    facts_.version->firmware = "new";
+    EXPECT_THAT(finding("profile"), HasSubstr("problem: auto, but the printer does not say"));
+    EXPECT_THAT(finding("profile"), HasSubstr("name its profile in the settings (jet3up, "));
+    facts_.version.reset();
+    EXPECT_THAT(finding("profile"), HasSubstr("problem: auto, but the printer does not say"));
+    records_have_escapes_ = [] { return false; };
+    EXPECT_THAT(finding("profile"), HasSubstr("warning: auto, but the printer does not say"));
+    facts_.version.emplace().type = "JET3";
+    facts_.version->firmware = "V62.0.9.0";
     EXPECT_EQ(finding("profile"), "ok: auto: jet3, since it is a JET3, firmware V62.0.9.0");
+}
+
+TEST_F(PreflightTest, shouldNoticeOneMachineBehindTwoNames) {
+    same_machine_ = {"line2"};
+    EXPECT_THAT(finding("identity"), HasSubstr("warning: "));
+    EXPECT_THAT(finding("identity"), HasSubstr("printer line2 is the same machine - Look at the addresses of both"));
+    known_serial_ = "1";
+    EXPECT_THAT(finding("identity"), HasSubstr("problem: ")) << "another one than it should be";
 }
 
 TEST_F(PreflightTest, shouldNoticeAProfileWithOtherEscapes) {

@@ -33,17 +33,13 @@ printer::Look healthy() {
 
 class PrinterWatchTest : public testing::Test {
 protected:
-    /// As the service does it: what is heard is known the next time.
     std::vector<PrinterWatch::News> take(const printer::Look& look) {
-        auto news = watch_.take(look, {settings_, printer_, known_, serial_});
-        known_ = look.machine ? look.machine : known_;
-        return news;
+        return watch_.take(look, {settings_, printer_, serial_});
     }
 
     PrinterWatch watch_;
     config::Settings settings_;
     config::PrinterSettings printer_;
-    std::optional<MachineStatus> known_;
     std::string serial_ = "104711";
 };
 
@@ -64,8 +60,32 @@ TEST_F(PrinterWatchTest, shouldTellOnceThatAPrinterIsGoneAndThatItIsBack) {
     EXPECT_THAT(take(gone), ElementsAre(IsNews(event_kind::printer_down, "Connection refused. Look whether")));
     EXPECT_EQ(watch_.link(), LinkState::down);
     EXPECT_THAT(take(gone), IsEmpty());
-    EXPECT_THAT(take(healthy()), ElementsAre(IsNews(event_kind::printer_up, "answers again")));
+    EXPECT_THAT(take(healthy()), ElementsAre(IsNews(event_kind::printer_up, "is there again")));
     EXPECT_THAT(take(healthy()), IsEmpty());
+}
+
+/// A printer in standby takes the connection and need not answer anything.
+TEST_F(PrinterWatchTest, shouldNotTakeASilentPrinterForOneThatIsGone) {
+    printer::Look silent;
+    silent.silent = true;
+    EXPECT_THAT(take(healthy()), IsEmpty());
+    EXPECT_THAT(take(silent), ElementsAre(IsNews(event_kind::printer_notice, "it may be in standby")));
+    EXPECT_THAT(take(silent), IsEmpty());
+    EXPECT_THAT(take(silent), IsEmpty());
+    EXPECT_EQ(watch_.link(), LinkState::up);
+    EXPECT_THAT(take(healthy()), IsEmpty());
+    EXPECT_EQ(take(silent).size(), 1U) << "again";
+}
+
+/// Whoever asks for a preflight reads what it finds, but nobody else does.
+TEST_F(PrinterWatchTest, shouldTellWhateverHasNotBeenToldByAStartOrARun) {
+    printer::Look look = healthy();
+    look.machine->error.raw = 0x12000000 | 12113;
+    look.machine->cover_open = true;
+    watch_.heard(*look.machine);
+    EXPECT_THAT(take(look), IsEmpty());
+    look.machine->error.raw = -1711274809;
+    EXPECT_THAT(take(look), ElementsAre(IsNews(event_kind::printer_warning, "1223")));
 }
 
 TEST_F(PrinterWatchTest, shouldTellAnErrorWhenItComesChangesAndGoes) {
@@ -78,7 +98,7 @@ TEST_F(PrinterWatchTest, shouldTellAnErrorWhenItComesChangesAndGoes) {
     look.machine->error.raw = -1711274809; // 1223 in a message window
     EXPECT_THAT(take(look), ElementsAre(IsNews(event_kind::printer_warning, ": last record. Nothing.")));
     printer_.errors[1223] = config::ErrorPolicy::stop;
-    known_->error.raw = 0;
+    watch_.heard(*healthy().machine);
     EXPECT_THAT(take(look), ElementsAre(IsNews(event_kind::printer_error, "1223")));
     EXPECT_THAT(take(healthy()), ElementsAre(IsNews(event_kind::printer_notice, "the error is gone: 1223")));
 }

@@ -65,6 +65,34 @@ TEST_F(BatchStoreTest, shouldNotStoreTheSameRecordsFromOtherBytes) {
     EXPECT_TRUE(import("n\n1\n2\n", spec("c", 'c')).job);
 }
 
+TEST_F(BatchStoreTest, shouldNotStoreTheSameRecordsOnceMoreForAnotherProfile) {
+    const auto layout = [](const char* profile, const char* more) {
+        return R"({"columns":[],"profile":")" + std::string{profile} + "\"" + more + "}";
+    };
+    const auto elsewhere = [](spool::JobSpec spec) {
+        spec.source.path = "/other/done/b";
+        return spec;
+    };
+    const spool::Job job = *import("n\n1\n", spec("a", 'a', layout("jet3up", ""))).job;
+    const BatchImport again = import("n\n1\n", elsewhere(spec("b", 'a', layout("auto", ""))));
+    ASSERT_TRUE(again.earlier);
+    EXPECT_EQ(again.earlier->id, job.id);
+    EXPECT_TRUE(import("n\n1\n", elsewhere(spec("b", 'a', layout("auto", ",\"header\":true")))).job)
+        << "in another way, for another printer";
+    const BatchImport same_folder = import("n\r\n1\r\n", spec("c", 'c', layout("jet3", ",\"header\":true")));
+    ASSERT_TRUE(same_folder.earlier) << "a change of the layout is no reason to print a batch again";
+    EXPECT_EQ(same_folder.earlier->id, job.id);
+}
+
+TEST_F(BatchStoreTest, shouldReadAnewWhatHasImages) {
+    const std::string images = R"({"columns":[],"graphics":["n"]})";
+    const spool::Job job = *import("n\n1\n", spec("a", 'a', images)).job;
+    EXPECT_TRUE(batches->find(spec("a", 'a', images)).value()->this_file);
+    EXPECT_FALSE(batches->find(spec("b", 'a', images)).value()) << "its images may be others";
+    EXPECT_EQ(import("n\n1\n", spec("b", 'a', images)).earlier->id, job.id) << "they are not";
+    EXPECT_TRUE(import("n\n2\n", spec("b", 'a', images)).job);
+}
+
 /// As after a crash between the import and the comparison.
 TEST_F(BatchStoreTest, shouldCompareTheRecordsOfAJobThatItFinds) {
     const spool::Job job = *import("n\n1\n", spec("a", 'a')).job;

@@ -19,6 +19,11 @@ public:
         reports.push_back(report);
         lines.push_back(report.name + ": " + std::string{to_string(report.verdict)});
     }
+    void importing(const std::string& name, bool left_over) override {
+        if (left_over) {
+            left_over_names.push_back(name);
+        }
+    }
     void note(const std::string& name, const std::string& words) override { notes.push_back(name + ": " + words); }
     bool progress(const std::string&, std::uint64_t, double) override {
         ++progress_calls;
@@ -33,6 +38,7 @@ public:
     std::vector<DropReport> reports;
     std::vector<std::string> lines;
     std::vector<std::string> notes;
+    std::vector<std::string> left_over_names;
     int progress_calls = 0;
     bool break_off = false;
     std::function<void(DropStep)> on_step;

@@ -689,5 +689,21 @@ TEST_F(DropFolderTest, shouldLeaveTheMarkOfTheNextFile) {
     EXPECT_THAT(names_in(""), IsEmpty());
 }
 
+/// What came while nobody was there to take it is told from what comes now, whenever it was written.
+TEST_F(DropFolderTest, shouldTellWhatIsLeftOverFromBeforeTheStart) {
+    const auto pause = [] { std::this_thread::sleep_for(std::chrono::milliseconds{30}); };
+    drop("old.csv", "name\nA\n");
+    std::ofstream{directory / "moved.csv"} << "name\nB\n";
+    pause();
+    settings.started_ns = std::chrono::system_clock::now().time_since_epoch() / std::chrono::nanoseconds{1};
+    pause();
+    drop("new.csv", "name\nC\n");
+    std::filesystem::rename(directory / "moved.csv", settings.folder / "moved.csv");
+    start();
+    ASSERT_FALSE(run());
+    EXPECT_THAT(events.left_over_names, ElementsAre("old.csv"));
+    EXPECT_EQ(jobs(), 3U);
+}
+
 } // namespace
 } // namespace linefeed::intake

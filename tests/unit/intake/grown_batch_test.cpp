@@ -67,6 +67,25 @@ TEST_F(GrownBatchTest, shouldTakeWhatOnlyBeginsAlike) {
     EXPECT_EQ(events.lines.back(), "e.csv: duplicate");
 }
 
+TEST_F(GrownBatchTest, shouldKnowTheSameRecordsHoweverTheyAreReadNow) {
+    start();
+    drop_and_run("a.csv", rows(3));
+    settings.layout.columns = {"name"};
+    start_anew();
+    drop_and_run("b.csv", "name,more\nN1,x\nN2,y\nN3,z\n");
+    EXPECT_EQ(events.lines.back(), "b.csv: duplicate");
+    EXPECT_EQ(jobs(), 1U);
+}
+
+TEST_F(GrownBatchTest, shouldNameTheBadRowsOfAFileThatHasGrownToo) {
+    start();
+    drop_and_run("a.csv", rows(1));
+    const std::string many = rows(3000); // the bad row comes pages behind
+    drop_and_run("b.csv", many + "\xFF\xFE\n");
+    EXPECT_EQ(events.lines.back(), "b.csv: failed");
+    EXPECT_THAT(reason("b.csv"), HasSubstr("1 of 3001 rows cannot be printed"));
+}
+
 TEST_F(GrownBatchTest, shouldCompareBatchesOfManyPages) {
     const int many = 3000; // records of a page: some hundred
     start();

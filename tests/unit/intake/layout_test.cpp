@@ -42,6 +42,22 @@ TEST_F(LayoutTest, shouldHaveOneCanonicalForm) {
         R"("query":"SELECT 'ä'","delimiter":"\t","header":false,"skip_bad":true,"mirrored":true,"orientation":1})");
 }
 
+TEST_F(LayoutTest, shouldKnowTheSameWayWhateverTheProfile) {
+    Layout layout;
+    layout.columns = {"\"profile\":\"x"};
+    const std::string one = canonical_json(layout);
+    layout.profile = protocol::profile_by_name("auto").value();
+    const std::string other = canonical_json(layout);
+    EXPECT_NE(one, other);
+    EXPECT_TRUE(is_same_way(one, other));
+    EXPECT_TRUE(is_same_way("{}", "{}"));
+    layout.columns = {"\"profile\":\"y"};
+    EXPECT_FALSE(is_same_way(one, canonical_json(layout)));
+    EXPECT_FALSE(reads_images(one));
+    layout.graphics = {"logo"};
+    EXPECT_TRUE(reads_images(canonical_json(layout)));
+}
+
 TEST_F(LayoutTest, shouldGiveEachColumnItsEncoding) {
     Layout layout;
     layout.encodings = {"windows-1252", "b=unicode-hex"};

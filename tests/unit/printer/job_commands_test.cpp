@@ -72,16 +72,50 @@ TEST(Script, shouldGoToThePrinterAndComeBack) {
 }
 
 TEST(Script, shouldSayThatItEndsEarlyOrReadsBackDifferently) {
-    Peer printer{[](std::string_view frame) {
-        return Peer::Reaction{frame == "^0?RS"   ? ready
-                              : frame == "^0?JL" ? "^0=JLEXTERN\r"
-                              : frame == "^0?JB" ? "^0*BEGINLJSCRIPT\r^0*OBJ [2]\r^0*ENDLJSCRIPT\r"
-                                                 : ""};
+    bool sent = false;
+    Peer printer{[&sent](std::string_view frame) {
+        sent = sent || frame == "^0*ENDLJSCRIPT";
+        return Peer::Reaction{frame == "^0?RS"            ? ready
+                              : frame == "^0?JL"          ? "^0=JLEXTERN\r"
+                              : frame == "^0?JB" && !sent ? "^0*BEGINLJSCRIPT\r^0*OBJ [0]\r^0*ENDLJSCRIPT\r"
+                              : frame == "^0?JB"          ? "^0*BEGINLJSCRIPT\r^0*OBJ [2]\r^0*ENDLJSCRIPT\r"
+                                                          : ""};
     }};
     const auto client = PrinterClient::connect(printer.settings()).value();
     EXPECT_FALSE(send_script(*client, {"OBJ [1]"})->reads_back_alike);
     Peer cut{[](std::string_view) { return Peer::Reaction{"^0*BEGINLJSCRIPT\r^0*OBJ [2]\r", true}; }};
     EXPECT_THAT(read_script(*PrinterClient::connect(cut.settings()).value()).error().message, HasSubstr("ends early"));
+}
+
+TEST(Script, shouldSayThatThePrinterStillHasTheScriptFromBefore) {
+    const std::string unchanged = "^0=RS2\t5\t0\t0\t9\t0\r";
+    Peer stubborn{[&unchanged](std::string_view frame) {
+        return Peer::Reaction{frame == "^0?RS"   ? unchanged
+                              : frame == "^0?JL" ? "^0=JLEXTERN\r"
+                              : frame == "^0?JB" ? "^0*BEGINLJSCRIPT\r^0*OBJ [2]\r^0*ENDLJSCRIPT\r"
+                                                 : ""};
+    }};
+    const auto client = PrinterClient::connect(stubborn.settings()).value();
+    const auto refused = send_script(*client, {"OBJ [1]"}, milliseconds{100});
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().kind, FailureKind::stopped);
+    EXPECT_THAT(refused.error().message, HasSubstr("it still has the one that it had before"));
+    EXPECT_TRUE(send_script(*client, {"OBJ [2]"}, milliseconds{100})->reads_back_alike) << "the same once more";
+}
+
+TEST(Script, shouldSayThatTheConnectionBrokeWithinTheScript) {
+    Peer printer{[](std::string_view frame) {
+        return Peer::Reaction{frame == "^0?RS"   ? ready
+                              : frame == "^0?JL" ? "^0=JLFFSDISK\\Jobs\\A.job\r"
+                                                 : "",
+                              frame == "^0?JL"};
+    }};
+    const auto client = PrinterClient::connect(printer.settings()).value();
+    const std::vector<std::string> lines(20'000, "OBJ [1 0 0 0 (ISO1_7x5) (a line)]");
+    const auto sent = send_script(*client, lines, milliseconds{100});
+    ASSERT_FALSE(sent);
+    EXPECT_EQ(sent.error().kind, FailureKind::unreachable);
+    EXPECT_THAT(sent.error().message, HasSubstr("within the script"));
 }
 
 TEST(ScriptLines, shouldTakeFilesOfAnyLineEnd) {

@@ -85,6 +85,50 @@ TEST(Probe, shouldNotSetAnythingOnceSomebodyHasStartedTheLine) {
     EXPECT_THAT(printer.heard(), Not(HasSubstr("=CM")));
 }
 
+/// What the printer says of its stop point, in order; each frame is asked for twice.
+class StopPoints {
+public:
+    explicit StopPoints(std::vector<int> values, int starts_behind = 1000)
+        : values_(std::move(values))
+        , starts_behind_(starts_behind) {}
+    Peer::Reaction operator()(std::string_view frame) {
+        if (frame == "^0?RS") {
+            return {++states_ > starts_behind_ ? "^0=RS2\t6\t0\t0\t9\t0\r" : "^0=RS2\t5\t0\t0\t9\t0\r"};
+        }
+        if (frame == "^0?SM") {
+            const auto at = std::min(asked_++ / 2, values_.size() - 1);
+            return {"^0=SM256\t0\t7\t" + std::to_string(values_[at]) + "\t1\r"};
+        }
+        return {};
+    }
+
+private:
+    std::vector<int> values_;
+    int starts_behind_;
+    std::size_t asked_ = 0;
+    int states_ = 0;
+};
+
+TEST(Probe, shouldPutNothingBackOnALineThatWasStartedMeanwhile) {
+    Peer printer{StopPoints{{40, 1}, 2}};
+    const auto found = probe(printer.settings());
+    ASSERT_FALSE(found);
+    EXPECT_THAT(found.error().message, HasSubstr("somebody has started it meanwhile; its stop-at was 40"));
+    EXPECT_THAT(printer.heard(), Not(HasSubstr("^0=CM40\n")));
+}
+
+TEST(Probe, shouldLeaveAStopPointAloneThatIsSomebodyElses) {
+    Peer printer{StopPoints{{40, 500}}};
+    EXPECT_THAT(probe(printer.settings()).error().message, HasSubstr("somebody has set its stop-at meanwhile"));
+    EXPECT_THAT(printer.heard(), Not(HasSubstr("^0=CM40\n")));
+}
+
+TEST(Probe, shouldPutTheStopPointBackOnceMoreWhereItWasNotTaken) {
+    Peer printer{StopPoints{{40, 1, 1, 40}}};
+    EXPECT_EQ(probe(printer.settings()).value()["keeps_stop_at"], true);
+    EXPECT_THAT(printer.heard(), HasSubstr("^0=CM40\n^0?SM\n^0?SM\n^0?RS\n^0=CM40\n"));
+}
+
 TEST(Probe, shouldSayWhatMayBeLeftBehind) {
     bool set = false;
     Peer printer{[&set](std::string_view frame) {

@@ -58,15 +58,22 @@ TEST(Tasks, shouldHaveNamesThatAreUniqueAndWays) {
     }
 }
 
-/// Files and scripts have their own tasks and subcommands; how frames of them go stands there.
 TEST(Tasks, shouldReachEveryCommandOfTheReference) {
     for (const protocol::Command& command : protocol::command_table) {
-        const bool elsewhere = command.group == Group::file || command.group == Group::script || command.code == "SW" ||
-                               (command.group == Group::parameter && command.code == "JL");
-        if (!elsewhere) {
-            EXPECT_THAT(tasks_using({command.group, command.code}), Not(IsEmpty()))
-                << static_cast<char>(command.group) << command.code;
-        }
+        EXPECT_THAT(tasks_using({command.group, command.code}), Not(IsEmpty()))
+            << static_cast<char>(command.group) << command.code;
+    }
+    EXPECT_THAT(tasks_using({Group::file, "RF"}), ElementsAre("files get", "backup", "restore"));
+    EXPECT_THAT(tasks_using({Group::file, "FA"}), ElementsAre("files get", "files put", "backup", "restore"));
+}
+
+TEST(Tasks, shouldSendNoFileAsItIsTypedWhileAJobIsOnTheLine) {
+    const Task& send = *find_task("send");
+    for (const auto& [frame, danger] :
+         {std::pair{"$FHFFSDISK\\\\Jobs\\\\a.job\\t1", Danger::feeding}, std::pair{"$FT1\\t0\\t", Danger::feeding},
+          std::pair{"$DFx", Danger::destructive}, std::pair{"$RFx", Danger::none}, std::pair{"?RS", Danger::none}}) {
+        const auto arguments = Arguments::read(send.arguments, {{"frame", frame}});
+        EXPECT_EQ(danger_of(send, *arguments).value(), danger) << frame;
     }
 }
 

@@ -116,6 +116,27 @@ TEST_F(AutostartTest, shouldNotLetAJobThatMayNotStartByItselfBeOvertaken) {
     EXPECT_EQ(printer.products(), serials(1, 20));
 }
 
+TEST_F(AutostartTest, shouldNotStartWhatLayInTheFolderBeforeTheServiceWasStarted) {
+    SimulatedPrinter printer{directory_ / "tape.csv", 1000};
+    drop("a.csv", 20, 1);
+    std::this_thread::sleep_for(std::chrono::milliseconds{30}); // the time of files stands still for a tick
+    open(settings(printer.address()));
+    const spool::JobId a = job_named("a.csv");
+    drop("b.csv", 20, 21);
+    const spool::JobId b = job_named("b.csv");
+    std::this_thread::sleep_for(std::chrono::milliseconds{300});
+    EXPECT_EQ(view(a).phase, JobPhase::queued);
+    EXPECT_EQ(view(b).phase, JobPhase::queued) << "nor what stands behind it";
+    EXPECT_TRUE(service_->printer("line1")->held);
+    EXPECT_THAT(event_kinds(), Contains("printer.notice"));
+    ASSERT_EQ(service_->start_next(anna, "line1").value(), a);
+    ASSERT_TRUE(comes_to(b, JobPhase::finished)) << "from now on by itself again";
+    drop("c.csv", 20, 41);
+    ASSERT_TRUE(comes_to(job_named("c.csv"), JobPhase::finished));
+    service_.reset();
+    EXPECT_EQ(printer.products(), serials(1, 60));
+}
+
 TEST_F(AutostartTest, shouldComeBackStandingAndPrintNothingByItself) {
     SimulatedPrinter printer{directory_ / "tape.csv", 300};
     open(settings(printer.address()));

@@ -1,5 +1,6 @@
 // What the operator can do with jobs and printers, with a real spool and a printer whose products are the judge.
 #include "service_fixture.hpp"
+#include "support/peer.hpp"
 
 #include <regex>
 
@@ -94,6 +95,51 @@ TEST_F(ServiceTest, shouldRefuseWhatDoesNotFitTheMoment) {
     service_.reset();
     const auto products = printer.products();
     EXPECT_EQ(products, serials(1, static_cast<std::uint32_t>(products.size())));
+}
+
+/// Neither while it is written down that it is begun, nor when that is done.
+TEST_F(ServiceTest, shouldShowNoJobAsStoppedThatHasJustBeenStarted) {
+    SimulatedPrinter printer{directory_ / "tape.csv", 1000};
+    open(settings_text({printer.address()}));
+    for (std::uint32_t first = 1; first < 200; first += 10) {
+        const spool::JobId job = import(10, first);
+        std::atomic<bool> over{false};
+        std::atomic<int> stopped{0};
+        std::thread looks{[&] {
+            while (!over) {
+                stopped += view(job).phase == JobPhase::stopped ? 1 : 0;
+            }
+        }};
+        EXPECT_TRUE(service_->start(anna, job));
+        EXPECT_TRUE(comes_to(job, JobPhase::finished));
+        over = true;
+        looks.join();
+        EXPECT_EQ(stopped, 0) << first;
+    }
+    service_.reset();
+    EXPECT_EQ(printer.products(), serials(1, 200));
+}
+
+/// A long task that keeps the printer for itself: the job waits for its end, a stop does not.
+TEST_F(ServiceTest, shouldStopAJobThatWaitsForALongTask) {
+    printer::Peer printer{[](std::string_view frame) {
+        return printer::Peer::Reaction{frame.starts_with("^0$RD") ? "^0$DI1\t00\r" : ""};
+    }};
+    open(settings_text({printer.settings().address.substr(6)}, ", watch_interval: 0 s"));
+    std::ofstream{directory_ / "file.job"} << "content";
+    std::thread writer{[this] {
+        EXPECT_FALSE(service_->write_file(anna, "line1", {"FFSDISK\\Jobs\\a.job", directory_ / "file.job", true}));
+    }};
+    ASSERT_TRUE(wait_until([&] { return printer.heard().find("^0$FT") != std::string::npos; }));
+    const spool::JobId job = import(10);
+    ASSERT_TRUE(service_->start(anna, job));
+    const auto begun = std::chrono::steady_clock::now();
+    ASSERT_TRUE(service_->stop(anna, "line1"));
+    EXPECT_LT(std::chrono::steady_clock::now() - begun, std::chrono::seconds{5});
+    EXPECT_EQ(view(job).phase, JobPhase::stopped);
+    EXPECT_THAT(view(job).message, HasSubstr("stopped on request"));
+    printer.cut();
+    writer.join();
 }
 
 TEST_F(ServiceTest, shouldStopWhileItArms) {
@@ -211,6 +257,29 @@ TEST_F(ServiceTest, shouldReportTheSameContentInsteadOfPrintingItTwice) {
     EXPECT_THAT(service_->jobs({.phases = {JobPhase::ready}}).value(), SizeIs(1));
     EXPECT_THAT(service_->jobs({.after = *again->job}).value(), SizeIs(1));
     EXPECT_THAT(service_->jobs({.limit = 1}).value(), SizeIs(1));
+}
+
+/// The same file with other pictures gives other records.
+TEST_F(ServiceTest, shouldReadAFileWithPicturesAnew) {
+    const auto picture = [this](const char* rows) { std::ofstream{directory_ / "logo.pbm"} << "P1\n2 2\n" << rows; };
+    const auto path = directory_ / "pictures.csv";
+    std::ofstream{path} << "logo\nlogo.pbm\n";
+    std::string text = settings_text({"127.0.0.1:1"});
+    text.replace(text.find("{serials:"), 9, "{logos: {columns: [logo], graphics: [logo]}, serials:");
+    open(text);
+    const daemon::ImportRequest request{.file = path, .name = {}, .layout = "logos", .printer = "line1"};
+    picture("1 0\n0 1\n");
+    const auto first = service_->import(anna, request);
+    ASSERT_TRUE(first && first->job) << (first ? first->report : first.error().message);
+    const auto same = service_->import(anna, request);
+    ASSERT_TRUE(same);
+    EXPECT_TRUE(same->duplicate);
+    EXPECT_EQ(same->job, first->job);
+    picture("1 1\n1 1\n");
+    const auto other = service_->import(anna, request);
+    ASSERT_TRUE(other && other->job);
+    EXPECT_FALSE(other->duplicate);
+    EXPECT_NE(other->job, first->job);
 }
 
 TEST_F(ServiceTest, shouldRefuseAFileWithBadRowsAndKeepNothingOfIt) {

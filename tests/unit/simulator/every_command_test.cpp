@@ -264,7 +264,7 @@ TEST(EveryCommand, shouldBeAnsweredOrObeyedBySimulatedPrinters) {
     }
 }
 
-// The page of the documentation: each cell is found out here, and none written by hand but for transfers().
+// The page of the documentation: each cell is found out here, and none written by hand.
 
 /// The name of the type that the message has; of a template with its arguments.
 std::string type_of(const protocol::Message& message) {
@@ -311,21 +311,12 @@ std::string is_parsed(const Command& row) {
     return same && !frames.empty() ? "yes" : "";
 }
 
-/// What sends or reads the command without being a task: printing and the transfer of files.
-std::vector<std::string_view> transfers(const Command& row) {
-    if (row.group == Group::parameter && row.code == "MR") {
-        return {"print"};
-    }
-    if (row.group != Group::file || row.code.starts_with('D') || row.code == "RD") {
-        return {};
-    }
-    return row.code == "RF" ? std::vector<std::string_view>{"files get", "backup", "restore"}
-                            : std::vector<std::string_view>{"files get", "files put", "backup", "restore"};
-}
-
-/// The tasks of `linefeed printer P` that send or read it, and transfers(); `send` for what it takes as it is typed.
+/// What of `linefeed printer P` sends or reads it, and printing; `send` for what it takes as it is typed.
 std::string reached_by(const Command& row) {
-    std::vector<std::string_view> names = transfers(row);
+    std::vector<std::string_view> names;
+    if (row.group == Group::parameter && row.code == "MR") {
+        names.emplace_back("print");
+    }
     std::ranges::copy(printer::tasks_using({row.group, row.code}), std::back_inserter(names));
     const printer::Task& send = *printer::find_task("send");
     const std::string frame = static_cast<char>(row.group) + (row.code.empty() ? "OBJ" : std::string{row.code});

@@ -151,6 +151,28 @@ TEST_F(SchemaTest, shouldTakeOverALargeLedgerInATimeThatGrowsWithItOnly) {
     EXPECT_EQ(sql("PRAGMA foreign_key_check"), "");
 }
 
+/// Files that go on with records of jobs from before first records were written down.
+TEST_F(SchemaTest, shouldMakeUpForTheFirstRecordsOfJobsFromBefore) {
+    {
+        Spool spool = open();
+        static_cast<void>(make_job(spool, 30));
+        static_cast<void>(make_job(spool, 10, 22117));
+        static_cast<void>(make_job(spool, 10, 500));
+    }
+    ASSERT_EQ(sql("UPDATE pages SET crc = crc + 1 WHERE job = 3"), "") << "a damaged one holds up nothing";
+    ASSERT_EQ(sql("DROP TABLE job_heads; DROP TABLE printers; PRAGMA user_version = 3"), "");
+
+    Spool spool = open();
+    EXPECT_EQ(sql("PRAGMA user_version"), std::to_string(migrations().size()));
+    const auto found = [&spool](std::uint32_t number) {
+        return spool.find_by_first_record(page_of(number, 1).frames).value().size();
+    };
+    EXPECT_EQ(found(1), 1U);
+    EXPECT_EQ(found(22118), 1U);
+    EXPECT_EQ(found(2), 0U);
+    EXPECT_EQ(found(501), 0U);
+}
+
 TEST_F(SchemaTest, shouldEnforceForeignKeysAfterAMigration) {
     auto database = Database::open(path.string(), {}).value();
     ASSERT_TRUE(database->execute("PRAGMA foreign_keys = ON").has_value());

@@ -39,6 +39,20 @@ TEST_F(SpoolPagesTest, shouldKeepJobsApart) {
     EXPECT_FALSE(spool.read_page(b.id, RecordNumber{10}).has_value());
 }
 
+TEST_F(SpoolPagesTest, shouldTellWhetherRecordsHoldEscapes) {
+    Spool spool = open();
+    const Job plain = make_job(spool, 95);
+    auto import = spool.begin_import(spec());
+    ASSERT_TRUE(import->add(page_of(1, 10)).has_value());
+    RecordPage page = page_of(11, 2);
+    page.frames.insert(page.frames.size() - 1, "\\^");
+    page.ends.back() += 2;
+    ASSERT_TRUE(import->add(page).has_value());
+    const Job escaped = import->commit("{}").value();
+    EXPECT_FALSE(spool.has_escapes(plain.id).value());
+    EXPECT_TRUE(spool.has_escapes(escaped.id).value());
+}
+
 TEST_F(SpoolPagesTest, shouldTakeRecordsUpToTheLastNumber) {
     Spool spool = open();
     const Job job = make_job(spool, 10, RecordNumber::max().value() - 10);
