@@ -13,7 +13,7 @@ import time
 import urllib.parse
 import uuid
 
-from harness import BIN, PATIENCE_S
+from harness import BIN, PATIENCE_S, free_port
 
 
 class UnixConnection(http.client.HTTPConnection):
@@ -33,11 +33,6 @@ class Problem(Exception):
     def __init__(self, status, body):
         super().__init__(f"{status}: {body}")
         self.status, self.body = status, body
-
-
-def free_port():
-    with socket.create_server(("127.0.0.1", 0)) as listener:
-        return listener.getsockname()[1]
 
 
 class Service:
