@@ -152,6 +152,7 @@ void Service::shut_down() {
 void Service::tick() {
     // While nothing is printed, nobody else copies the write-ahead log.
     static_cast<void>(access_.write([](spool::Spool& spool) { return spool.checkpoint(); }));
+    access_.remove_leftovers();
 }
 
 std::vector<daemon::Heart> Service::hearts() const {

@@ -54,9 +54,15 @@ class Service:
         self.spool.parent.mkdir(exist_ok=True)
         self.file.write_text(json.dumps(self.settings, indent=1), encoding="utf-8")  # JSON is YAML
 
-    def start(self):
+    def command(self):
+        return [str(BIN / "linefeedd"), "--config", str(self.file)]
+
+    def launch(self):
         with open(self.log_file, "ab") as log:
-            self.process = subprocess.Popen([str(BIN / "linefeedd"), "--config", str(self.file)], stdin=subprocess.DEVNULL, stdout=log, stderr=log)
+            self.process = subprocess.Popen(self.command(), stdin=subprocess.DEVNULL, stdout=log, stderr=log)
+
+    def start(self):
+        self.launch()
         deadline = time.monotonic() + PATIENCE_S
         while True:
             if self.process.poll() is not None:
