@@ -515,8 +515,8 @@ void Connection::on_written(const error_code& error) {
 
 void Connection::log(const Answer& answer) const {
     if (core_.on_request) {
-        core_.on_request({peer_.name, caller_, method_, target_, answer.status, answer.body.size(),
-                          steady_clock::now() - begun_});
+        core_.on_request(
+            {peer_.name, caller_, method_, target_, answer.status, answer.body.size(), steady_clock::now() - begun_});
     }
 }
 

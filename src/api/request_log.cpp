@@ -14,9 +14,8 @@ constexpr int forbidden = 403;
 constexpr int first_failure = 500;
 
 std::string shortened(std::string_view text) {
-    return text.size() <= RequestLog::longest_target
-               ? std::string{text}
-               : std::string{text.substr(0, RequestLog::longest_target)} + "...";
+    return text.size() <= RequestLog::longest_target ? std::string{text}
+                                                     : std::string{text.substr(0, RequestLog::longest_target)} + "...";
 }
 
 std::string words_of(const AccessRecord& request) {

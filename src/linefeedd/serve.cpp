@@ -100,7 +100,8 @@ cli::ExitCode serve(const std::filesystem::path& file, const config::Settings& s
     }
     service::Service& service = **opened;
     api::RequestLog requests;
-    api::Server server{service, settings, [&](const api::AccessRecord& request) { log_request(log, requests, request); }};
+    api::Server server{service, settings,
+                       [&](const api::AccessRecord& request) { log_request(log, requests, request); }};
     told = &server;
     if (const auto started = server.start(); !started) {
         log.write(LogComponent::api, LogLevel::error, started.error().message);
