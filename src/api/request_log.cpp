@@ -1,7 +1,6 @@
 #include "api/request_log.hpp"
 
 #include <string_view>
-#include <utility>
 
 namespace linefeed::api {
 
@@ -30,29 +29,18 @@ std::vector<RequestLog::Line> RequestLog::take(const AccessRecord& request, Inst
     if (!refused && request.status < first_failure) {
         return {{LogLevel::debug, words_of(request)}};
     }
+    const auto held_back = (refused ? refused_ : failed_).take(now);
+    if (!held_back) {
+        return {};
+    }
     std::vector<Line> lines;
-    if (may_write(refused ? refused_ : failed_, now, lines)) {
-        lines.push_back({LogLevel::warning, words_of(request)});
+    if (*held_back > 0) {
+        lines.push_back({LogLevel::warning, std::to_string(*held_back) + " more requests were " +
+                                                (refused ? "refused for want of rights" : "not served") +
+                                                " before that"});
     }
+    lines.push_back({LogLevel::warning, words_of(request)});
     return lines;
-}
-
-/// Counts it. Behind a minute of which not all was written, `lines` says how much was not.
-bool RequestLog::may_write(Kind& kind, Instant now, std::vector<Line>& lines) {
-    if (kind.written == 0 || now - kind.since >= std::chrono::minutes{1}) {
-        kind.since = now;
-        kind.written = 0;
-        if (const auto left_out = std::exchange(kind.left_out, 0U); left_out > 0) {
-            lines.push_back(
-                {LogLevel::warning, std::to_string(left_out) + " more requests were " + kind.words + " before that"});
-        }
-    }
-    if (kind.written == lines_a_minute) {
-        ++kind.left_out;
-        return false;
-    }
-    ++kind.written;
-    return true;
 }
 
 } // namespace linefeed::api

@@ -3,10 +3,10 @@
 #pragma once
 
 #include "api/core.hpp"
+#include "base/flood_bound.hpp"
 #include "base/time.hpp"
 #include "config/settings.hpp"
 
-#include <chrono>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -28,17 +28,8 @@ public:
     static constexpr std::size_t longest_target = 200;  ///< characters of it that are shown
 
 private:
-    /// Requests of one kind, so that failures do not hide who was refused.
-    struct Kind {
-        const char* words;
-        Instant since{}; ///< the minute that is counted
-        std::uint32_t written = 0;
-        std::uint64_t left_out = 0;
-    };
-    static bool may_write(Kind& kind, Instant now, std::vector<Line>& lines);
-
-    Kind refused_{"refused for want of rights"};
-    Kind failed_{"not served"};
+    FloodBound refused_{lines_a_minute};
+    FloodBound failed_{lines_a_minute}; ///< of their own, so that failures do not hide who was refused
 };
 
 } // namespace linefeed::api
