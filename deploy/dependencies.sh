@@ -7,7 +7,7 @@ set -euo pipefail
 
 build_packages=(cmake ninja-build g++ libboost1.81-dev libsqlite3-dev sqlite3 zlib1g-dev libssl-dev libpng-dev libcli11-dev nlohmann-json3-dev libyaml-cpp-dev libspdlog-dev libsystemd-dev prometheus-cpp-dev)
 test_packages=(libgtest-dev libgmock-dev libbenchmark-dev python3 python3-jsonschema python3-yaml gcovr valgrind
-               scdoc shellcheck systemd prometheus)
+               scdoc shellcheck systemd prometheus iproute2)
 lint_packages=(clang-format-14 clang-tidy-14)
 fuzz_packages=(clang-14 libclang-rt-14-dev)
 package_packages=(dpkg-dev debhelper scdoc lintian debootstrap)

@@ -29,12 +29,13 @@ quietly() {
 quietly cmake --preset coverage -B "$build"
 quietly cmake --build "$build" --parallel "$(nproc)" --target "${libraries[@]/%/_tests}"
 find "$build" -name '*.gcda' -delete
+# Several at once: their counts of the same file are added up under a lock.
+quietly xargs -P "$(nproc)" -I '{}' "$build/bin/{}_tests" --gtest_brief=1 <<< "$(printf '%s\n' "${libraries[@]}")"
 objects=()
 for library in "${libraries[@]}"; do
-    quietly "$build/bin/${library}_tests" --gtest_brief=1
     objects+=("$build/src/$library" "$build/tests/unit/$library")
 done
-quietly gcovr --root . --filter 'src/' --exclude-throw-branches --exclude-unreachable-branches --gcov-ignore-parse-errors \
+quietly gcovr -j "$(nproc)" --root . --filter 'src/' --exclude-throw-branches --exclude-unreachable-branches --gcov-ignore-parse-errors \
     --json "$build/coverage.json" "${objects[@]}"
 
 failed=0

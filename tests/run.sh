@@ -109,7 +109,7 @@ stage "build" build_release || finish
 run_tests "unit and architecture" -L unit --parallel "$cores"
 run_tests "fuzz corpora" -L fuzz --parallel "$cores"
 run_tests "simulation" -L simulation -E mutations --parallel "$cores"
-run_tests "integration" -L integration
+run_tests "integration" -L integration --parallel $((cores + 1)) # most of them wait for a line
 stage "bench-slice" benchmarks/run.py --quick
 stage "format" tests/lint.sh format
 [[ $long -eq 0 ]] || stage "tidy" tests/lint.sh tidy

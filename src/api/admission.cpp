@@ -169,20 +169,13 @@ Checked<Found> find(std::string_view method, std::string_view path) {
 }
 
 /// The rest of a request whose host is right and whose path exists.
-Checked<Admitted> check(const Header& header, const Found& found, std::string_view query, const Peer& peer,
-                        const AccessRules& rules, const BodyLimits& limits) {
+Checked<Admitted> check(const Header& header, const Found& found, std::string_view query, const Identity& identity,
+                        bool over_unix_socket, const BodyLimits& limits) {
     Admitted admitted;
     admitted.route = found.route;
-    auto identity = identify(header.field("authorization"), peer, rules);
-    if (!identity) {
-        return identity.error();
-    }
-    if (const auto may = check_role(*identity, found.route->role, rules); !may) {
-        return may.error();
-    }
-    admitted.request.caller = std::move(identity->caller);
-    admitted.request.role = identity->role;
-    admitted.request.over_unix_socket = peer.unix_socket;
+    admitted.request.caller = identity.caller;
+    admitted.request.role = identity.role;
+    admitted.request.over_unix_socket = over_unix_socket;
     admitted.request.parameter = found.parameter;
     admitted.request.what = found.what;
     if (!accepts(header.field("accept"), found.route->produces)) {
@@ -266,7 +259,17 @@ Admission admit(const Header& header, const Peer& peer, const AccessRules& rules
         admission.answer->allow = found->allow;
         return admission;
     }
-    admission.admitted = check(header, *found, target->query, peer, rules, limits);
+    const auto identity = identify(header.field("authorization"), peer, rules);
+    if (!identity) {
+        admission.admitted = identity.error();
+        return admission;
+    }
+    admission.caller = identity->caller.name;
+    if (const auto may = check_role(*identity, found->route->role, rules); !may) {
+        admission.admitted = may.error();
+        return admission;
+    }
+    admission.admitted = check(header, *found, target->query, *identity, peer.unix_socket, limits);
     return admission;
 }
 

@@ -43,6 +43,7 @@ struct Admitted {
 
 /// One of three: a problem, an answer that needs no handler (OPTIONS), or a request.
 struct Admission {
+    std::string caller;           ///< Caller::name; empty = it was refused before that was known
     std::string cors_origin;      ///< goes into the answer, whatever it is; empty = none
     bool preflight = false;       ///< the answer is for a browser that asks beforehand
     bool without_body = false;    ///< HEAD

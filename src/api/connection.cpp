@@ -193,6 +193,7 @@ void Connection::read_header() {
     rules_ = core_.rules; // those in force now, also on a connection that was opened before
     enter(State::header, rules_->request_timeout);
     begun_ = since_;
+    caller_.clear();
     method_.clear();
     target_.clear();
     cors_origin_.clear();
@@ -246,6 +247,7 @@ void Connection::admit_request() {
         header.content_length = *length;
     }
     Admission admission = admit(header, peer_, rules_->access, rules_->body);
+    caller_ = std::move(admission.caller);
     cors_origin_ = std::move(admission.cors_origin);
     preflight_ = admission.preflight;
     without_body_ = admission.without_body;
@@ -513,8 +515,8 @@ void Connection::on_written(const error_code& error) {
 
 void Connection::log(const Answer& answer) const {
     if (core_.on_request) {
-        core_.on_request({peer_.name, admitted_ ? admitted_->request.caller.name : "", method_, target_, answer.status,
-                          answer.body.size(), steady_clock::now() - begun_});
+        core_.on_request(
+            {peer_.name, caller_, method_, target_, answer.status, answer.body.size(), steady_clock::now() - begun_});
     }
 }
 

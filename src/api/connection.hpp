@@ -83,6 +83,7 @@ private:
     std::unique_ptr<Reader> reader_;
     std::shared_ptr<const Rules> rules_;          ///< those of this request
     std::chrono::steady_clock::time_point begun_; ///< first byte of the request
+    std::string caller_;                          ///< as in Admission
     std::string method_;
     std::string target_;
     std::shared_ptr<Admitted> admitted_;

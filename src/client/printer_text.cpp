@@ -15,9 +15,16 @@ Cell state_of(const Json& printer) {
     if (!member(printer, "error").is_null()) {
         return {phase == "idle" ? "error" : phase + ", error", Colour::bad};
     }
-    if (phase == "idle") {                       // between jobs there is no link
+    if (phase == "idle") {
         const bool held = flag(printer, "held"); // stopped, and no queue starts by itself
-        return held ? Cell{"stopped", Colour::warning} : Cell{phase};
+        const std::string rest = held ? "stopped" : phase;
+        if (flag(printer, "watched") && link == "down") { // otherwise there is no link between jobs
+            return {rest + ", no link", Colour::bad};
+        }
+        if (flag(printer, "cover_open")) {
+            return {rest + ", cover open", Colour::warning};
+        }
+        return held ? Cell{rest, Colour::warning} : Cell{rest};
     }
     return link == "up" ? Cell{phase, Colour::good} : Cell{phase + ", no link", Colour::bad};
 }

@@ -1,6 +1,7 @@
 #include "linefeedd/serve.hpp"
 
 #include "api/core.hpp"
+#include "api/request_log.hpp"
 #include "api/server.hpp"
 #include "daemon/log.hpp"
 #include "daemon/service_manager.hpp"
@@ -25,15 +26,11 @@ void reload(service::Service& service) {
 }
 
 /// Who was refused leaves a trace; what changes something is in the audit log.
-void log_request(daemon::Log& log, const api::AccessRecord& request) {
-    constexpr int unauthorized = 401;
-    constexpr int forbidden = 403;
-    constexpr int first_failure = 500;
-    const bool refused = request.status == unauthorized || request.status == forbidden;
-    const LogLevel level = refused || request.status >= first_failure ? LogLevel::warning : LogLevel::debug;
-    log.write(LogComponent::api, level,
-              request.method + ' ' + request.target + ": " + std::to_string(request.status) + ", from " + request.peer +
-                  (request.caller.empty() ? "" : " as " + request.caller));
+void log_request(daemon::Log& log, api::RequestLog& requests, const api::AccessRecord& request) {
+    const auto now = std::chrono::steady_clock::now().time_since_epoch();
+    for (const api::RequestLog::Line& line : requests.take(request, Instant{now})) {
+        log.write(LogComponent::api, line.level, line.text);
+    }
 }
 
 /// Says once that a thread does not get on, before systemd ends the service.
@@ -102,7 +99,9 @@ cli::ExitCode serve(const std::filesystem::path& file, const config::Settings& s
         return cli::ExitCode::other;
     }
     service::Service& service = **opened;
-    api::Server server{service, settings, [&log](const api::AccessRecord& request) { log_request(log, request); }};
+    api::RequestLog requests;
+    api::Server server{service, settings,
+                       [&](const api::AccessRecord& request) { log_request(log, requests, request); }};
     told = &server;
     if (const auto started = server.start(); !started) {
         log.write(LogComponent::api, LogLevel::error, started.error().message);

@@ -175,8 +175,8 @@ Message PrinterClient::message_of(const protocol::Frame& frame) {
         oddities_.damaged_bytes += malformed->payload.size();
     }
     const auto* const action = std::get_if<protocol::ActionMessage>(&message);
-    const bool own = action != nullptr && (action->action == protocol::Action::crc_ok ||
-                                           action->action == protocol::Action::end_of_data);
+    const bool own = action != nullptr &&
+                     (action->action == protocol::Action::crc_ok || action->action == protocol::Action::end_of_data);
     oddities_.echoes = oddities_.echoes || (action != nullptr && !own);
     return message;
 }

@@ -48,7 +48,7 @@ public:
             return added ? job_->flush() : added;
         });
     }
-    /// What is stored is removed, step by step; what cannot be removed now goes when the spool is opened again.
+    /// What is stored is removed; what the disk does not let go now goes later.
     void refuse() override {
         waiting_.clear();
         waiting_bytes_ = 0;
@@ -61,7 +61,7 @@ public:
             return {};
         }));
         job_.reset();
-        static_cast<void>(batches_.remove(id));
+        static_cast<void>(batches_.spool_.remove_job(id));
     }
     [[nodiscard]] Result<spool::Job> commit(std::string import_report) override {
         auto job = batches_.spool_.write([&](spool::Spool& spool) -> Result<spool::Job> {
@@ -111,7 +111,7 @@ Result<std::optional<intake::KnownBatch>> Batches::find(const spool::JobSpec& sp
         return found.error();
     }
     if (found->gives_way) {
-        if (auto removed = remove(*found->gives_way); !removed) {
+        if (auto removed = spool_.remove_job(*found->gives_way); !removed) {
             return removed.error();
         }
     }
@@ -129,7 +129,7 @@ Result<intake::BatchImport> Batches::import(intake::RowSource& source, const spo
     }
     intake::BatchImport batch{std::move(outcome->report), std::move(outcome->job), {}};
     if (earlier_) {
-        if (auto removed = remove(batch.job->id); !removed) {
+        if (auto removed = spool_.remove_job(batch.job->id); !removed) {
             return removed.error();
         }
         batch.job.reset();
@@ -190,18 +190,6 @@ Result<bool> Batches::adopt(const spool::Job& job) {
         auto written = write_ticket(spool, job);
         return written ? Result<bool>{true} : written.error();
     });
-}
-
-Result<void> Batches::remove(spool::JobId job) {
-    while (true) {
-        const auto more = spool_.write([&](spool::Spool& spool) { return spool.remove_job_step(job); });
-        if (!more) {
-            return more.error();
-        }
-        if (!*more) {
-            return {};
-        }
-    }
 }
 
 } // namespace linefeed::service

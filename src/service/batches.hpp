@@ -37,7 +37,6 @@ private:
     class Target;
     [[nodiscard]] Result<spool::Job> commit(spool::Spool& spool, spool::JobImport& job, const std::string& report);
     [[nodiscard]] Result<void> write_ticket(spool::Spool& spool, const spool::Job& job);
-    [[nodiscard]] Result<void> remove(spool::JobId job);
 
     SpoolAccess& spool_;
     spool::Ticket ticket_;

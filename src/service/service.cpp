@@ -4,6 +4,8 @@
 #include "daemon/events.hpp"
 #include "daemon/wall_clock.hpp"
 
+#include <chrono>
+
 namespace linefeed::service {
 
 namespace event_kind = daemon::event_kind;
@@ -160,6 +162,7 @@ void Service::shut_down() {
 void Service::tick() {
     // While nothing is printed, nobody else copies the write-ahead log.
     static_cast<void>(access_.write([](spool::Spool& spool) { return spool.checkpoint(); }));
+    access_.remove_leftovers();
 }
 
 std::vector<daemon::Heart> Service::hearts() const {
@@ -212,7 +215,23 @@ void Service::event(std::string_view kind, const std::string& printer, std::opti
     events_.add({.kind = std::string{kind}, .printer = printer, .job = job, .message = std::move(message)});
 }
 
+/// The audit log is kept for ever: who is refused over and over must not fill the disk with it.
+std::optional<std::uint64_t> Service::take_refusal(const std::string& who) {
+    constexpr std::uint32_t lines_a_minute = 20;
+    constexpr std::size_t most_callers = 256;
+    const std::lock_guard lock{refusals_mutex_};
+    if (refusals_.size() == most_callers && !refusals_.contains(who)) {
+        refusals_.clear();
+    }
+    const auto now = std::chrono::steady_clock::now().time_since_epoch();
+    return refusals_.try_emplace(who, lines_a_minute).first->second.take(Instant{now});
+}
+
 void Service::write_audit(const daemon::Caller& caller, const Act& act, const std::optional<Failure>& refused) {
+    const auto held_back = refused ? take_refusal(caller.name) : std::optional<std::uint64_t>{0};
+    if (!held_back) {
+        return;
+    }
     spool::AuditEntry entry;
     entry.time_ns = daemon::wall_clock_ns();
     entry.who = caller.name;
@@ -221,6 +240,9 @@ void Service::write_audit(const daemon::Caller& caller, const Act& act, const st
     spool::JsonObject detail = act.detail;
     if (refused) {
         detail.add("refused", refused->message);
+    }
+    if (*held_back > 0) {
+        detail.add_json("more_refused_before", std::to_string(*held_back));
     }
     entry.detail = detail.text();
     entry.done = !refused;

@@ -2,6 +2,7 @@
 // ask of it. Nothing prints that was not started: by an operator, or by the autostart of a queue that is allowed to.
 #pragma once
 
+#include "base/flood_bound.hpp"
 #include "config/problem.hpp"
 #include "config/settings.hpp"
 #include "daemon/feed_thread.hpp"
@@ -17,10 +18,12 @@
 #include "spool/json_text.hpp"
 
 #include <atomic>
+#include <cstdint>
 #include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -160,6 +163,8 @@ private:
         return result;
     }
     void write_audit(const daemon::Caller& caller, const Act& act, const std::optional<Failure>& refused);
+    /// Whether this refusal is written down, and how many of that caller were not before it.
+    [[nodiscard]] std::optional<std::uint64_t> take_refusal(const std::string& who);
 
     /// Rows that an operator's word comes to, and the newest row of the job as he spoke.
     struct Said {
@@ -200,6 +205,8 @@ private:
     SpoolAccess access_;
     EventLog events_;
     IntakeCounts counts_;
+    std::mutex refusals_mutex_;                  ///< for what follows
+    std::map<std::string, FloodBound> refusals_; ///< by caller
 
     std::mutex reloads_; ///< one at a time, as a whole: taken before orders_
     /// One operation at a time decides about jobs and queues; none waits for a printer meanwhile.

@@ -23,6 +23,30 @@ Finding finding(std::string check, bool good, std::string words, std::string adv
     return {std::move(check), good ? Severity::ok : Severity::problem, std::move(words), good ? "" : std::move(advice)};
 }
 
+/// What would keep it from printing now, the worst first.
+Finding finding_of(const daemon::PrinterView& printer) {
+    const std::string check = "printer " + printer.name;
+    const auto warning = [&](std::string words, std::string advice) {
+        return Finding{check, Severity::warning, std::move(words), std::move(advice)};
+    };
+    if (printer.watched && printer.link == daemon::LinkState::down) {
+        return warning("does not answer at " + printer.address,
+                       "look whether the printer is switched on, and at its network");
+    }
+    if (!printer.error.none()) {
+        return warning("error " + protocol::describe(printer.error) +
+                           (printer.error_meaning.empty() ? "" : ": " + printer.error_meaning),
+                       printer.error_advice.empty() ? "see the printer's panel" : printer.error_advice);
+    }
+    if (printer.cover_open.value_or(false)) {
+        return warning("the head cover is open", "close it before the next start");
+    }
+    if (!printer.warnings.empty()) {
+        return warning(printer.warnings.front(), "linefeed printer " + printer.name + " tells more");
+    }
+    return {check, Severity::ok, std::string{to_string(printer.phase)}, ""};
+}
+
 } // namespace
 
 daemon::ServiceStatus Service::status() {
@@ -43,11 +67,7 @@ daemon::ServiceStatus Service::status() {
                                  folder.works ? "" : "see to the folder: it is tried again every few seconds"});
     }
     for (const LinePtr& line : lines()) {
-        const daemon::PrinterView view = line->view();
-        status.checks.push_back({"printer " + view.name,
-                                 view.warnings.empty() ? Severity::ok : Severity::warning,
-                                 view.warnings.empty() ? std::string{to_string(view.phase)} : view.warnings.front(),
-                                 {}});
+        status.checks.push_back(finding_of(line->view()));
     }
     return status;
 }

@@ -48,6 +48,12 @@ public:
     }
     [[nodiscard]] daemon::StoreThread& store() { return store_; }
 
+    /// A job of which nothing was printed, step by step: nobody waits for all of it. One that the disk does not let go
+    /// is remembered.
+    [[nodiscard]] Result<void> remove_job(spool::JobId job);
+    /// Those that were remembered; returns within a second or so, whether or not all are gone.
+    void remove_leftovers();
+
 private:
     using Reader = std::unique_ptr<spool::Spool>;
     [[nodiscard]] Result<Reader> take_reader();
@@ -59,6 +65,7 @@ private:
     std::filesystem::path file_;
     std::mutex mutex_; ///< for what follows
     std::vector<Reader> readers_;
+    std::vector<spool::JobId> leftovers_;
 };
 
 } // namespace linefeed::service

@@ -288,9 +288,9 @@ class BadPrinters(BadInput):
         self.assertIn("continues with record 11", result.out, "the ledger is where it was")
 
     def test_refused_port(self):
-        with socket.create_server(("127.0.0.1", 0)) as server:
-            port = server.getsockname()[1]
-        self.refuse_printer(3, f"tcp://127.0.0.1:{port}", "cannot be reached", "refused")
+        with socket.socket() as taken:  # and nobody listens there
+            taken.bind(("127.0.0.1", 0))
+            self.refuse_printer(3, f"tcp://127.0.0.1:{taken.getsockname()[1]}", "cannot be reached", "refused")
 
     def test_host_that_does_not_exist(self):
         self.assert_one_clear_line(3, self.print(self.good_file, "tcp://no-such-printer.invalid:3000"), "no-such-printer.invalid")

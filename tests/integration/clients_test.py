@@ -22,7 +22,7 @@ class Clients(plant_test.PlantCase):
         super().setUp()
         self.printer = self.simulator("--rate", RATE)
         self.service = self.make_service({"layouts": {"codes": {"columns": ["code"]}}, "printers": {"line1": {"address": self.printer.address}},
-                                          "http": {"port": plant_test.service.free_port(), "request_timeout": "5 s"}})
+                                          "http": {"port": harness.free_port(), "request_timeout": "5 s"}})
         self.port = self.service.settings["http"]["port"]
         self.service.start()
         self.times = []  # of requests that were answered

@@ -6,6 +6,7 @@ never what linefeed says about itself.
 
 import contextlib
 import csv
+import itertools
 import json
 import os
 import pathlib
@@ -23,6 +24,19 @@ BIN = pathlib.Path(os.environ.get("LINEFEED_BIN_DIR", pathlib.Path(__file__).res
 LONG = os.environ.get("LINEFEED_LONG_TESTS", "") not in ("", "0")
 PATIENCE_S = 60  # longest wait for a program that should end by itself
 TAPE_DELAY_S = 5
+# Ports for what cannot say which one it was given: below those that the kernel deals out, a row for each test process, so that tests that
+# run at once do not meet.
+ROWS, PORTS_IN_ROW = 2000, 10
+FIRST_PORT = 10000 + os.getpid() % ROWS * PORTS_IN_ROW
+ports = itertools.cycle(range(FIRST_PORT, FIRST_PORT + PORTS_IN_ROW))
+
+
+def free_port():
+    """Where nobody listens."""
+    for port in itertools.islice(ports, PORTS_IN_ROW):
+        with contextlib.suppress(OSError), socket.create_server(("127.0.0.1", port)):
+            return port
+    raise AssertionError(f"no port is free from {FIRST_PORT} on")
 
 
 class Result:

@@ -13,7 +13,7 @@ import time
 import urllib.parse
 import uuid
 
-from harness import BIN, PATIENCE_S
+from harness import BIN, PATIENCE_S, free_port
 
 
 class UnixConnection(http.client.HTTPConnection):
@@ -35,11 +35,6 @@ class Problem(Exception):
         self.status, self.body = status, body
 
 
-def free_port():
-    with socket.create_server(("127.0.0.1", 0)) as listener:
-        return listener.getsockname()[1]
-
-
 class Service:
     """`settings` as in linefeed.yaml; where the spool and the sockets are is added."""
 
@@ -59,9 +54,15 @@ class Service:
         self.spool.parent.mkdir(exist_ok=True)
         self.file.write_text(json.dumps(self.settings, indent=1), encoding="utf-8")  # JSON is YAML
 
-    def start(self):
+    def command(self):
+        return [str(BIN / "linefeedd"), "--config", str(self.file)]
+
+    def launch(self):
         with open(self.log_file, "ab") as log:
-            self.process = subprocess.Popen([str(BIN / "linefeedd"), "--config", str(self.file)], stdin=subprocess.DEVNULL, stdout=log, stderr=log)
+            self.process = subprocess.Popen(self.command(), stdin=subprocess.DEVNULL, stdout=log, stderr=log)
+
+    def start(self):
+        self.launch()
         deadline = time.monotonic() + PATIENCE_S
         while True:
             if self.process.poll() is not None:

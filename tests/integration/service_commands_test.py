@@ -18,11 +18,6 @@ import harness
 JOB_OF = re.compile(r"job (\d+)")
 
 
-def free_port():
-    with socket.create_server(("127.0.0.1", 0)) as listener:
-        return listener.getsockname()[1]
-
-
 class ServiceTest(harness.TestCase):
     """A test with a linefeedd that has one printer, `line1`, and a folder."""
 
@@ -33,7 +28,7 @@ class ServiceTest(harness.TestCase):
         self.printer = self.simulator(*self.simulator_options)
         self.link = self.proxy(self.printer)
         self.socket = self.directory / "linefeed.sock"
-        self.port = free_port()
+        self.port = harness.free_port()
         self.folder = self.directory / "folder"
         self.folder.mkdir()
         self.config = self.directory / "linefeed.yaml"

@@ -461,6 +461,22 @@ class Keys(unittest.TestCase):
             self.assertEqual(service.ask("POST", self.START, key="k2").status, 202)
             self.assertEqual(service.changes(), 2)
 
+    def test_every_post_is_carried_out_once_for_its_key(self):
+        with Service() as service:
+            for path, item in yaml.safe_load(OPENAPI.read_text())["paths"].items():
+                if "post" in item:
+                    with self.subTest(path):
+                        target = path.replace("{printer}", "line1").replace("{job}", "12")
+                        body = Schemas.BODIES.get(item["post"]["operationId"])
+                        headers = {"Content-Type": "application/octet-stream"} if isinstance(body, bytes) else {}
+                        first = service.ask("POST", target, body, headers, key=path)
+                        changes = service.changes()
+                        again = service.ask("POST", target, body, headers, key=path)
+                        self.assertEqual((first.status, first.body, "true"), (again.status, again.body, again.headers["Idempotency-Replayed"]))
+                        other = {} if body is None else body + b"x" if isinstance(body, bytes) else dict(body, more=1)
+                        self.assertEqual(service.ask("POST", target, other, headers, key=path).problem, "key-reused")
+                        self.assertEqual(changes, service.changes())
+
     def test_a_key_belongs_to_one_request(self):
         with Service() as service:
             queue = "/api/v1/jobs/12/queue"

@@ -84,16 +84,23 @@ TEST_F(Texts, shouldListPrintersWithWhatIsWrongBelow) {
     lost["link"] = "down";
     lost["figures"] = nullptr;
     Json idle = printer_json("line4");
-    idle["link"] = "down"; // as it is between jobs
+    idle["link"] = "down"; // as it is between jobs, where nobody looks
+    idle["watched"] = false;
+    Json gone = printer_json("line6");
+    gone["link"] = "down";
+    Json open = printer_json("line7");
+    open["cover_open"] = true;
     Json held = printer_json("line5");
     held["held"] = true;
-    EXPECT_EQ(printers_text({printing_printer(), broken, lost, idle, held}, paper),
+    EXPECT_EQ(printers_text({printing_printer(), broken, lost, idle, held, gone, open}, paper),
               "PRINTER  STATE              JOB  QUEUE   RATE        FIFO  DATA LEFT  ADDRESS\n"
               "line1    printing            12      2  812/s  243 of 256    1:02:03  tcp://192.168.1.20:3000\n"
               "line2    error                                                        tcp://192.168.1.20:3000\n"
               "line3    printing, no link   12      2                                tcp://192.168.1.20:3000\n"
               "line4    idle                                                         tcp://192.168.1.20:3000\n"
               "line5    stopped                                                      tcp://192.168.1.20:3000\n"
+              "line6    idle, no link                                                tcp://192.168.1.20:3000\n"
+              "line7    idle, cover open                                             tcp://192.168.1.20:3000\n"
               "line2: error 10202 (battery low), message from FEP; replace it\n"
               "line2: data for 3 min\n");
 }

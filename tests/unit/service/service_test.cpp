@@ -142,6 +142,21 @@ TEST_F(ServiceTest, shouldStopAJobThatWaitsForALongTask) {
     writer.join();
 }
 
+TEST_F(ServiceTest, shouldKeepSomeOfAFloodOfRefusalsAndAllThatWasDone) {
+    open(settings_text({"127.0.0.1:1"}));
+    const spool::JobId job = import(10, 1, "");
+    const auto before = service_->audit(0, 1000)->size();
+    for (int k = 0; k < 300; ++k) {
+        EXPECT_FALSE(service_->start(anna, spool::JobId{99}));
+    }
+    EXPECT_FALSE(service_->start({"bob"}, spool::JobId{99}));
+    EXPECT_TRUE(service_->cancel(anna, job));
+    const auto audit = service_->audit(0, 1000).value();
+    EXPECT_EQ(audit.size() - before, 20U + 1 + 1);
+    EXPECT_EQ(audit[audit.size() - 2].who, "bob");
+    EXPECT_TRUE(audit.back().done);
+}
+
 TEST_F(ServiceTest, shouldStopWhileItArms) {
     simulator::SimulatorSettings slow;
     slow.server.reply_delay = std::chrono::milliseconds{100};

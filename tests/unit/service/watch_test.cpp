@@ -17,6 +17,16 @@ protected:
     [[nodiscard]] bool comes_to_show(const std::function<bool(const daemon::PrinterView&)>& wanted) {
         return wait_until([&] { return wanted(service_->printer("line1").value()); });
     }
+    /// What the doctor says of line1; empty = it is well.
+    [[nodiscard]] std::string finding() const {
+        for (const daemon::Finding& finding : service_->status().checks) {
+            if (finding.check == "printer line1" && finding.severity != daemon::Severity::ok) {
+                EXPECT_FALSE(finding.advice.empty());
+                return finding.words;
+            }
+        }
+        return {};
+    }
     static simulator::SimulatorSettings machine(const std::string& serial_number) {
         simulator::SimulatorSettings settings;
         settings.printer.serial_number = serial_number;
@@ -31,6 +41,7 @@ TEST_F(WatchTest, shouldShowAnIdlePrinterAsItIsAndTellWhatComesAndGoes) {
     const std::string port = printer->port();
     open(settings(*printer));
     ASSERT_TRUE(comes_to_show([](const auto& view) { return view.watched && view.cover_open == true; }));
+    EXPECT_EQ(finding(), "the head cover is open");
     EXPECT_EQ(service_->printer("line1")->link, daemon::LinkState::up);
     EXPECT_EQ(service_->printer("line1")->serial_number, "104711");
     EXPECT_EQ(service_->printer("line1")->known_serial_number, "104711");
@@ -39,10 +50,12 @@ TEST_F(WatchTest, shouldShowAnIdlePrinterAsItIsAndTellWhatComesAndGoes) {
 
     printer.reset();
     ASSERT_TRUE(comes_to_show([](const auto& view) { return view.link == daemon::LinkState::down; }));
+    EXPECT_THAT(finding(), HasSubstr("does not answer"));
     EXPECT_TRUE(wait_until([&] { return testing::Matches(Contains("printer.down"))(event_kinds()); }));
     EXPECT_THAT(event_kinds(), Not(Contains("printer.up")));
     printer.emplace(directory_ / "tape2.csv", 100, port, machine("104711"));
     ASSERT_TRUE(comes_to_show([](const auto& view) { return view.link == daemon::LinkState::up; }));
+    EXPECT_EQ(finding(), "");
     EXPECT_TRUE(wait_until([&] { return testing::Matches(Contains("printer.up"))(event_kinds()); }));
 }
 
