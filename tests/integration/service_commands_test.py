@@ -21,7 +21,7 @@ JOB_OF = re.compile(r"job (\d+)")
 class ServiceTest(harness.TestCase):
     """A test with a linefeedd that has one printer, `line1`, and a folder."""
 
-    simulator_options = ("--rate", "2000")
+    simulator_options = ("--rate", "1000")
 
     def setUp(self):
         super().setUp()
