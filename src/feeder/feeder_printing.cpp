@@ -237,9 +237,6 @@ std::uint64_t Feeder::prints_through(RecordNumber number) const {
 }
 
 void Feeder::confirm(RecordNumber through, Actions& out) {
-    if (unproven_) {
-        through = std::min(through, unproven_->previous());
-    }
     if (through > confirmed_through_) {
         confirmed_through_ = through;
         out.push_back(ConfirmPrinted{through, mail_});

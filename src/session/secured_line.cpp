@@ -27,6 +27,21 @@ void SecuredLine::add(Frame frame) {
     ++size_;
 }
 
+void SecuredLine::add_records(RecordRange records) {
+    Frame frame;
+    frame.kind = Kind::record;
+    frame.records = records;
+    add(std::move(frame));
+}
+
+void SecuredLine::drop_inquiries() {
+    for (std::size_t i = 0; i < size_; ++i) {
+        if (waiting(i).kind == Kind::inquiry) {
+            waiting(i).kind = Kind::record; // of which there are none
+        }
+    }
+}
+
 void SecuredLine::drop_records() {
     for (std::size_t i = 0; i < size_; ++i) {
         waiting(i).records = {};

@@ -70,9 +70,11 @@ public:
     [[nodiscard]] static constexpr Duration repeats_take() { return max_syncs * patience; }
 
     void add(Frame frame);
-    void add_records(RecordRange records) { add({.kind = Kind::record, .records = records}); }
+    void add_records(RecordRange records);
     /// Records that have not begun will not: the line is being stopped.
     void drop_records();
+    /// Nor will inquiries: nobody wants the answers any more.
+    void drop_inquiries();
     /// The first record that has not begun; absent = none waits.
     [[nodiscard]] std::optional<RecordNumber> first_waiting() const;
 

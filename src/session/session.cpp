@@ -270,7 +270,7 @@ void Session::on_time(Instant now, Effects& out) {
         return;
     }
     carry_out(actions, now, out);
-    for (std::size_t i = 0; i < inquiries_.size() && !end_;) {
+    for (std::size_t i = 0; i < inquiries_.size();) {
         if (now < inquiries_[i].deadline) {
             ++i;
             continue;

@@ -131,7 +131,7 @@ private:
     void send_records(RecordRange records, Instant now);
     void stage_records(RecordRange records, Instant now);
     void stage_command(std::string_view bytes, Instant now);
-    void note_records(RecordRange records, Instant now);
+    void note_records(RecordRange records, std::string_view first, std::size_t bytes, Instant now);
     void note_sent(std::size_t bytes, Instant now);
     [[nodiscard]] RecordNumber staged_through() const;
     [[nodiscard]] bool drained() const;

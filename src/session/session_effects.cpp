@@ -70,6 +70,9 @@ void Session::carry_out(const feeder::Action& action, Instant now, Effects& out)
         void operator()(const feeder::Notice& notice) const { out.push_back(notice); }
         void operator()(const feeder::End& end) const {
             session.end_ = end;
+            session.inquiries_.clear();
+            session.secured_.drop_inquiries();
+            session.secured_.drop_records();
             session.farewell_deadline_ = now + session.settings_.farewell_timeout;
         }
     };
@@ -108,13 +111,13 @@ void Session::stage_command(std::string_view bytes, Instant now) {
 void Session::stage_records(RecordRange records, Instant now) {
     const PageWindow::Staged staged = pages_.stage(records, outbox_);
     note_sent(staged.bytes, now);
-    note_records(records, now);
-    if (observer_ != nullptr) {
-        observer_->on_records_sent(records, staged.first, staged.bytes, now);
-    }
+    note_records(records, staged.first, staged.bytes, now);
 }
 
-void Session::note_records(RecordRange records, Instant now) {
+void Session::note_records(RecordRange records, std::string_view first, std::size_t bytes, Instant now) {
+    if (observer_ != nullptr) {
+        observer_->on_records_sent(records, first, bytes, now);
+    }
     if (staged_records_) {
         staged_records_->records = RecordRange::closed(staged_records_->records.first(), records.last());
     } else {

@@ -56,7 +56,7 @@ void Session::take_proven(const protocol::Frame& frame, Instant now, Actions& ac
     secured_.on_echo(frame.raw);
     const auto what = protocol::parameter_from_code(frame.payload.substr(0, 2));
     const SecuredLine::Step step = what ? secured_.on_answer(*what) : SecuredLine::Step::wait;
-    if (step == SecuredLine::Step::next && !end_) {
+    if (step == SecuredLine::Step::next) {
         take_unsecured(frame, now, actions);
         if (answered(*what)) { // it cannot be read
             time_out(*what, now, actions);
@@ -74,15 +74,13 @@ void Session::settle_frame(SecuredLine::Step step, Instant now, Actions& actions
         send_announced(now);
         return;
     case SecuredLine::Step::lost:
-        if (answered(secured_.current().what) && !end_) {
+        if (answered(secured_.current().what)) {
             time_out(secured_.current().what, now, actions);
         }
         return;
     case SecuredLine::Step::unproven:
         secured_.drop_records();
-        if (!end_) {
-            feeder_.on_unproven_record(secured_.current().number, now, actions);
-        }
+        feeder_.on_unproven_record(secured_.current().number, now, actions);
         return;
     }
 }
@@ -95,11 +93,7 @@ void Session::begin_frame(Instant now) {
     if (frame->kind == SecuredLine::Kind::record) {
         const std::string_view bytes = pages_.frame_of(frame->number);
         secured_.set_record(bytes);
-        const RecordRange record{frame->number, RecordCount{1}};
-        note_records(record, now);
-        if (observer_ != nullptr) {
-            observer_->on_records_sent(record, bytes, bytes.size(), now);
-        }
+        note_records({frame->number, RecordCount{1}}, bytes, bytes.size(), now);
     } else if (frame->kind == SecuredLine::Kind::inquiry) {
         inquiries_.push_back({frame->what, Instant::max()}); // the secured line keeps the time
     }

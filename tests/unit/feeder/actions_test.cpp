@@ -105,7 +105,7 @@ constexpr std::array all_codes{
     OutcomeCode::printer_restarted, OutcomeCode::no_answer,
     OutcomeCode::link_lost,         OutcomeCode::unreachable,
     OutcomeCode::records_in_doubt,  OutcomeCode::storage_failed,
-    OutcomeCode::ran_dry,
+    OutcomeCode::ran_dry,           OutcomeCode::line_noise,
 };
 
 TEST(Outcome, shouldHaveANameAndWordsForEveryCode) {

@@ -42,6 +42,51 @@ TEST(FeederStopping, shouldFindTheTruthAfterAStopOnRequest) {
                  ended(OutcomeCode::stop_requested));
 }
 
+TEST(FeederStopping, shouldStopBeforeAnUnprovenRecord) {
+    Story story = reach(Phase::printing);
+    story.sm(1, 102, 110);
+    story.take();
+    story.feeder.on_unproven_record(RecordNumber{106}, story.now, story.actions);
+    story.expect("!ST; ?RS");
+    story.judge(0, 104, true, 1004);
+    story.expect("settle this run so far: printed 103-104 by mail status and total print counter; settle this run: "
+                 "printed none, in doubt none, unused 105-106 by mail status and total print counter; " +
+                 ended(OutcomeCode::line_noise));
+}
+
+TEST(FeederStopping, shouldDoubtAnUnprovenRecordThatIsPrinted) {
+    Story story = reach(Phase::printing);
+    story.sm(1, 102, 110);
+    story.take();
+    story.feeder.on_unproven_record(RecordNumber{105}, story.now, story.actions);
+    story.judge(0, 106, true, 1006);
+    story.expect("settle this run so far: printed 103-104 by mail status and total print counter; settle this run: "
+                 "printed none, in doubt 105-106, unused none by mail status and total print counter; " +
+                 ended(OutcomeCode::line_noise));
+}
+
+TEST(FeederStopping, shouldDoubtAnUnprovenRecordBeforeAnUnfinishedPrint) {
+    Story story = reach(Phase::printing);
+    story.sm(1, 102, 110);
+    story.take();
+    story.feeder.on_unproven_record(RecordNumber{105}, story.now, story.actions);
+    story.judge(0, 106, false, 1006);
+    story.expect("settle this run so far: printed 103-104 by mail status and total print counter; settle this run: "
+                 "printed none, in doubt 105-106, unused none by mail status and total print counter; " +
+                 ended(OutcomeCode::line_noise));
+}
+
+TEST(FeederStopping, shouldNotConfirmAnUnprovenRecord) {
+    Story story = reach(Phase::printing);
+    story.sm(1, 102, 110);
+    story.take();
+    story.feeder.on_unproven_record(RecordNumber{103}, story.now, story.actions);
+    story.judge(0, 103, true, 1003);
+    story.expect("settle this run so far: printed none by mail status and total print counter; settle this run: "
+                 "printed none, in doubt 103-103, unused 104-106 by mail status and total print counter; " +
+                 ended(OutcomeCode::line_noise));
+}
+
 TEST(FeederStopping, shouldGiveAllEvidenceWithTheVerdict) {
     Story story = reach(Phase::stopping);
     story.judge(0, 104, true, 1004);

@@ -28,6 +28,14 @@ TEST(LineFit, shouldLeaveANetworkAlone) {
     EXPECT_EQ(settings.feeder.fill_at_most, feeder::FeederSettings{}.fill_at_most);
 }
 
+TEST(LineFit, shouldWaitForRepeatsOfASecuredLineOfAnySpeed) {
+    SessionSettings settings;
+    settings.line.crc = true;
+    fit_to_line(settings, 40);
+    EXPECT_GT(settings.feeder.flush_timeout, feeder::FeederSettings{}.flush_timeout + SecuredLine::repeats_take());
+    EXPECT_EQ(settings.feeder.pacing.most_inquiries, 1);
+}
+
 TEST(LineFit, shouldSendNoMoreAtOnceThanASlowLineCarries) {
     SessionSettings settings;
     settings.line = {.bytes_per_second = at_9600};

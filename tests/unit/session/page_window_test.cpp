@@ -33,6 +33,11 @@ protected:
 
 using Texts = std::vector<std::string>;
 
+TEST_F(PageWindowTest, shouldGiveTheFrameOfOneRecord) {
+    EXPECT_EQ(window.frame_of(RecordNumber{12}), "^0=MR12\trecord 12\r");
+    EXPECT_EQ(window.frame_of(RecordNumber{22}), "^0=MR22\trecord 22\r");
+}
+
 TEST_F(PageWindowTest, shouldStageASliceOfOnePage) {
     EXPECT_EQ(stage(records(12, 13)), (Texts{"^0=MR12\trecord 12\r^0=MR13\trecord 13\r"}));
     EXPECT_EQ(stage(records(19, 19)), (Texts{"^0=MR19\trecord 19\r"}));

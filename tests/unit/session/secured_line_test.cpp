@@ -79,6 +79,73 @@ TEST_F(SecuredLineTest, shouldRepeatWhatThePrinterRefuses) {
     EXPECT_EQ(line_.on_right(), Step::next);
 }
 
+TEST_F(SecuredLineTest, shouldNotHeedWhatBelongsToNothing) {
+    EXPECT_EQ(line_.on_right(), Step::wait);
+    EXPECT_EQ(line_.on_refused(), Step::wait);
+    EXPECT_EQ(line_.on_answer(Parameter::SM), Step::wait);
+    line_.on_echo("^0=MR5\tx");
+    EXPECT_EQ(silence(), Step::wait);
+    add_records(5, 5);
+    EXPECT_FALSE(line_.idle());
+    static_cast<void>(begin());
+    EXPECT_EQ(line_.on_answer(Parameter::SM), Step::wait);
+    line_.on_echo("^0=MR5");
+    EXPECT_EQ(silence(), Step::unproven);
+}
+
+TEST_F(SecuredLineTest, shouldGiveUpWhatIsRefusedAgainAndAgain) {
+    add(Kind::inquiry, "^0?SM\r");
+    add(Kind::command, "^0!GO\r");
+    for (const Step last : {Step::lost, Step::next}) {
+        static_cast<void>(begin());
+        Step step = line_.on_refused();
+        for (; step == Step::send; step = line_.on_refused()) {
+            static_cast<void>(send());
+        }
+        EXPECT_EQ(step, last);
+    }
+}
+
+TEST_F(SecuredLineTest, shouldGiveUpWhatIsLostAgainAndAgain) {
+    add(Kind::inquiry, "^0?SM\r");
+    add(Kind::command, "^0!GO\r");
+    for (const Step last : {Step::lost, Step::next}) {
+        const std::string frame = begin();
+        int repeats = 0;
+        Step step = silence();
+        for (; step == Step::send; step = silence()) {
+            const auto code = protocol::parameter_from_code(send().substr(3, 2));
+            ASSERT_EQ(line_.on_answer(*code), Step::send);
+            EXPECT_EQ(send(), frame);
+            ++repeats;
+        }
+        EXPECT_EQ(step, last);
+        EXPECT_EQ(repeats, 7);
+    }
+}
+
+TEST_F(SecuredLineTest, shouldGiveACommandUpWhenNothingIsAnswered) {
+    add(Kind::command, "^0!GO\r");
+    static_cast<void>(begin());
+    Step step = silence();
+    for (; step == Step::send; step = silence()) {
+        static_cast<void>(send());
+    }
+    EXPECT_EQ(step, Step::next);
+    EXPECT_FALSE(line_.busy());
+}
+
+TEST_F(SecuredLineTest, shouldSendOnlyCommandsInTheEnd) {
+    add_records(5, 6);
+    add(Kind::inquiry, "^0?SM\r");
+    add(Kind::command, "^0!ST\r");
+    line_.drop_records();
+    line_.drop_inquiries();
+    EXPECT_EQ(begin(), "^0!ST");
+    EXPECT_EQ(line_.on_right(), Step::next);
+    EXPECT_EQ(begin(), "nothing");
+}
+
 TEST_F(SecuredLineTest, shouldNotRepeatForEver) {
     add_records(5, 5);
     static_cast<void>(begin());
@@ -106,6 +173,7 @@ TEST_F(SecuredLineTest, shouldTakeTheEchoForProof) {
     static_cast<void>(begin());
     line_.on_echo("^0=MR5\ty");
     line_.on_echo("^0=MR5\tx");
+    line_.on_echo("^0=MR5\ty");
     EXPECT_EQ(silence(), Step::next);
     static_cast<void>(begin());
     line_.on_echo("^0=MR5\tx");

@@ -21,10 +21,24 @@ SessionSettings secured_settings() {
     return settings;
 }
 
+/// Counts what it is told of.
+struct Watching : FrameObserver {
+    void on_frame_received(std::string_view, Instant) override {}
+    void on_damage_received(std::uint64_t, Instant) override {}
+    void on_command_sent(std::string_view, Instant) override { ++commands; }
+    void on_records_sent(RecordRange range, std::string_view first, std::size_t bytes, Instant) override {
+        EXPECT_EQ(first.size(), bytes);
+        EXPECT_EQ(range.count(), RecordCount{1});
+        ++sent;
+    }
+    int commands = 0;
+    int sent = 0;
+};
+
 class SecuredSessionTest : public testing::Test {
 protected:
     /// What happens to the frame that the host sent.
-    enum class Fate { arrives, refused, unannounced, lost, word_damaged, answer_damaged };
+    enum class Fate { arrives, refused, unannounced, lost, word_damaged, word_in_pieces, answer_damaged };
 
     /// Answers until the host has nothing more to say. Returns the frames that it sent, without announcements.
     std::string answer_all() {
@@ -53,12 +67,17 @@ protected:
             host_.receive(said);
             return;
         }
-        host_.receive(fate == Fate::word_damaged ? "^0!Og\r" : "^0!OK\r");
+        host_.receive(fate == Fate::word_damaged ? "^0!Og\r" : fate == Fate::word_in_pieces ? "~0!OK\r" : "^0!OK\r");
         if (!said.empty()) {
             std::string crc = std::to_string(protocol::crc32(said.substr(0, said.size() - 1)));
-            crc.back() = fate == Fate::answer_damaged ? 'x' : crc.back();
+            if (fate == Fate::answer_damaged) {
+                crc.back() = crc.back() == '0' ? '1' : '0';
+            }
             host_.receive("^0=NR" + crc + "\r" + said);
         }
+    }
+    static std::string announced(const std::string& frame) {
+        return "^0=NR" + std::to_string(protocol::crc32(frame)) + "\r" + frame + "\r";
     }
     /// The printer's answer, if any.
     std::string execute(const std::string& frame) {
@@ -123,7 +142,8 @@ protected:
     }
 
     std::vector<std::unique_ptr<RecordPage>> pages_ = make_pages(1, records, 20, plain_text);
-    Conversation host_{secured_settings()};
+    Watching watching_;
+    Conversation host_{secured_settings(), {}, &watching_};
     std::function<Fate(const std::string& frame)> fate_ = [](const std::string&) { return Fate::arrives; };
     std::string frames_;
     std::uint32_t last_ = 0;
@@ -159,6 +179,71 @@ TEST_F(SecuredSessionTest, shouldTakeADamagedWordForRight) {
     fate_ = [](const std::string& frame) { return frame.starts_with("^0=MR7\t") ? Fate::word_damaged : Fate::arrives; };
     print_through(0);
     EXPECT_EQ(last_, records);
+}
+
+TEST_F(SecuredSessionTest, shouldTakeTheBytesOfADamagedWordForRight) {
+    fate_ = [](const std::string& frame) {
+        return frame.starts_with("^0=MR7\t") ? Fate::word_in_pieces : Fate::arrives;
+    };
+    print_through(0);
+    EXPECT_EQ(last_, records);
+    EXPECT_EQ(host_.session.statistics().bytes_damaged, 5U);
+}
+
+TEST_F(SecuredSessionTest, shouldNotTakeOtherBytesForAWord) {
+    fate_ = [](const std::string& frame) { return frame.starts_with("^0=MR7\t") ? Fate::lost : Fate::arrives; };
+    host_.connect();
+    static_cast<void>(answer_all());
+    host_.grant(1, records);
+    static_cast<void>(answer_all());
+    for (const auto& page : pages_) {
+        host_.page(*page);
+    }
+    static_cast<void>(answer_all());
+    host_.receive("abc\r^0!GO\r^0=NRx\r^0=ZZ1\r" + announced("^0=ZZ1") + announced("^0=SM256\t0\t0\t0\t1"));
+    EXPECT_EQ(host_.sent(), "") << "the record has not been confirmed";
+    EXPECT_EQ(last_, 6U);
+}
+
+TEST_F(SecuredSessionTest, shouldTellWhoeverKeepsTheFrames) {
+    print_through(0);
+    EXPECT_EQ(watching_.sent, static_cast<int>(records));
+    EXPECT_GT(watching_.commands, watching_.sent);
+}
+
+TEST_F(SecuredSessionTest, shouldAskAgainForAnAnswerThatCannotBeRead) {
+    host_.connect();
+    static_cast<void>(host_.sent());
+    host_.receive("^0!OK\r" + announced("^0=RSx"));
+    host_.wait(milliseconds{50});
+    EXPECT_EQ(host_.sent(), "^0=NR" + std::to_string(protocol::crc32("^0?RS")) + "\n^0?RS\n");
+}
+
+TEST_F(SecuredSessionTest, shouldGiveAPrinterUpThatSaysNothing) {
+    fate_ = [](const std::string&) { return Fate::lost; };
+    host_.connect();
+    const std::string story = wait_for_end();
+    EXPECT_NE(story.find("no_answer"), std::string::npos) << story;
+}
+
+TEST_F(SecuredSessionTest, shouldEndThoughTheLastInquiryGetsLost) {
+    SessionSettings patient = secured_settings();
+    patient.farewell_timeout = std::chrono::seconds{30};
+    Conversation host{patient};
+    host.connect();
+    host.stop();
+    for (int i = 0; i < 20 && host.story().find("close") == std::string::npos; ++i) {
+        host.wake();
+    }
+    EXPECT_LT(host.now, Instant{std::chrono::seconds{10}}) << "it did not wait for the farewell's time-out";
+}
+
+TEST_F(SecuredSessionTest, shouldNotHeedAnAnswerThatComesAfterTheEnd) {
+    host_.connect();
+    host_.stop();
+    EXPECT_EQ(host_.story().find("close"), std::string::npos) << "the inquiry is still under way";
+    host_.receive("^0!OK\r" + announced("^0=RS2\t5\t0\t0\t0\t0"));
+    EXPECT_NE(host_.story().find("close"), std::string::npos);
 }
 
 TEST_F(SecuredSessionTest, shouldNotBelieveAnAnswerThatWasNotAnnounced) {
