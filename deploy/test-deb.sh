@@ -43,10 +43,11 @@ trap clean_up EXIT
 trap 'exit 130' INT
 trap 'exit 143' TERM HUP
 
-in_root() {
-    chroot "$work/root" /usr/bin/env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive "$@"
-}
-as_service() { in_root setpriv --reuid linefeed --regid linefeed --init-groups -- "$@"; }
+surroundings=(/usr/bin/env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive)
+service_user=(setpriv --reuid linefeed --regid linefeed --init-groups --)
+in_root() { chroot "$work/root" "${surroundings[@]}" "$@"; }
+as_service() { in_root "${service_user[@]}" "$@"; }
+become_service() { exec chroot "$work/root" "${surroundings[@]}" "${service_user[@]}" "$@"; } # in the background: signals reach it
 install_file() { # PACKAGE: as an operator does, from a file
     cp "$1" "$work/root/tmp/linefeed.deb"
     in_root apt-get -q -o Dpkg::Use-Pty=0 install --yes --no-install-recommends /tmp/linefeed.deb < /dev/null > "$work/apt.log" 2>&1 ||
@@ -144,7 +145,7 @@ umount "$work/root/sys"
 
 # The line: a printer, a job of some time, and the service or, where it is not there, the command line.
 start_printer() {
-    as_service linefeed-sim --listen 127.0.0.1:0 --rate 200 --tape /srv/linefeed/tape.csv > "$work/simulator.out" 2>&1 &
+    become_service linefeed-sim --listen 127.0.0.1:0 --rate 200 --tape /srv/linefeed/tape.csv > "$work/simulator.out" 2>&1 &
     jobs+=($!)
     port=
     for _ in {1..100}; do
@@ -179,7 +180,7 @@ printers: {line1: {address: "tcp://127.0.0.1:$port", queue: {autostart: true}}}
 folders: {line1: {path: /srv/linefeed/line1, layout: serials, printer: line1, autostart: true, settle: rename}}
 YAML
     as_service linefeedd --config /etc/linefeed/linefeed.yaml --check-config > /dev/null || fail "linefeedd --check-config"
-    as_service linefeedd --config /etc/linefeed/linefeed.yaml > "$work/line.out" 2>&1 &
+    become_service linefeedd --config /etc/linefeed/linefeed.yaml > "$work/line.out" 2>&1 &
     line=$!
     for _ in {1..100}; do
         [[ ! -d $work/root/srv/linefeed/line1/processing ]] || break
@@ -188,7 +189,7 @@ YAML
     mv "$work/root/srv/linefeed/serials.csv.new" "$work/root/srv/linefeed/line1/serials.csv"
 else
     mv "$work/root/srv/linefeed/serials.csv.new" "$work/root/srv/linefeed/serials.csv"
-    as_service linefeed print /srv/linefeed/serials.csv --printer "tcp://127.0.0.1:$port" --spool /var/lib/linefeed/spool.db > "$work/line.out" 2>&1 &
+    become_service linefeed print /srv/linefeed/serials.csv --printer "tcp://127.0.0.1:$port" --spool /var/lib/linefeed/spool.db > "$work/line.out" 2>&1 &
     line=$!
 fi
 jobs+=("$line")
@@ -208,7 +209,9 @@ wait_for_prints "$records"
 if [[ -x $work/root/usr/sbin/linefeedd ]]; then
     kill -TERM "$line"
 fi
-wait "$line" || { cat "$work/line.out" >&2; fail "what printed has ended with exit code $?"; }
+code=0
+wait "$line" || code=$?
+[[ $code -eq 0 ]] || { cat "$work/line.out" >&2; fail "what printed has ended with exit code $code"; }
 cut -d , -f 3 "$work/root/srv/linefeed/tape.csv" | sed 1d | cmp - <(seq -f 'serial %06g' 1 "$records") || fail "the tape is not what was to be printed"
 as_service linefeed ledger 1 --spool /var/lib/linefeed/spool.db --verify
 
