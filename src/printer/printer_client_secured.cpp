@@ -94,7 +94,7 @@ bool PrinterClient::is_for_listener(const protocol::Frame& frame, const protocol
         word_ = Word::right;
         return false;
     }
-    if (announced && *announced == protocol::crc32(frame.raw)) {
+    if (announced && protocol::is_announced_by(frame.raw, *announced)) {
         return true;
     }
     oddities_.damaged_bytes += frame.raw.size();

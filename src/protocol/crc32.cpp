@@ -12,4 +12,11 @@ std::uint32_t crc32(std::string_view frame_without_cr) {
     return static_cast<std::uint32_t>(::crc32_z(start, bytes, frame_without_cr.size()));
 }
 
+bool is_announced_by(std::string_view raw, std::uint32_t crc) {
+    if (raw.ends_with('\n')) {
+        raw.remove_suffix(1);
+    }
+    return crc32(raw) == crc;
+}
+
 } // namespace linefeed::protocol

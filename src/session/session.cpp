@@ -62,12 +62,16 @@ bool may_be_answer(const protocol::Frame& frame) {
 
 } // namespace
 
+namespace {
+constexpr std::uint64_t length_bytes = 5; ///< of `!LN`
+} // namespace
+
 void Session::take_damage(std::uint64_t bytes, Instant now, Actions& actions) {
     statistics_.bytes_damaged += bytes;
     if (observer_ != nullptr) {
         observer_->on_damage_received(bytes, now);
     }
-    if (settings_.line.crc && bytes == damaged_ok_bytes) {
+    if (settings_.line.crc && (bytes == damaged_ok_bytes || bytes == damaged_ok_bytes + length_bytes)) {
         settle_frame(secured_.on_right(), now, actions);
     }
 }

@@ -3,8 +3,6 @@
 #include "protocol/crc32.hpp"
 #include "session/session.hpp"
 
-#include <functional>
-#include <numeric>
 #include <utility>
 
 namespace linefeed::session {
@@ -19,14 +17,15 @@ bool is_parameter(const protocol::Frame& frame, Parameter what) {
     return frame.group == Group::parameter && frame.payload.starts_with(protocol::code(what));
 }
 
-/// `^0!OK`, also with one byte damaged: of a frame that it did not check the printer says nothing, and `=FC` is longer.
+/// `!OK`, also with one byte damaged: of a frame that it did not check the printer says nothing, and `=FC` is longer.
 /// Taken for right wrongly, a refused record is missing, and the printer stops at the gap.
-bool is_right(std::string_view raw) {
-    constexpr std::string_view right = "^0!OK";
-    const auto differing = [&] {
-        return std::inner_product(raw.begin(), raw.end(), right.begin(), 0, std::plus<>{}, std::not_equal_to<>{});
-    };
-    return raw.size() == right.size() && differing() <= 1;
+bool is_right(const protocol::Frame& frame) {
+    if (frame.payload.size() != 2) {
+        return false;
+    }
+    const int differing =
+        (frame.group != Group::action ? 1 : 0) + (frame.payload[0] != 'O' ? 1 : 0) + (frame.payload[1] != 'K' ? 1 : 0);
+    return differing <= 1;
 }
 
 } // namespace
@@ -39,11 +38,11 @@ void Session::take_secured(const protocol::Frame& frame, Instant now, Actions& a
         return;
     }
     const auto announced = std::exchange(announced_crc_, std::nullopt);
-    if (is_right(frame.raw)) {
+    if (is_right(frame)) {
         settle_frame(secured_.on_right(), now, actions);
     } else if (is_parameter(frame, Parameter::FC)) {
         settle_frame(secured_.on_refused(), now, actions);
-    } else if (announced && *announced == protocol::crc32(frame.raw)) {
+    } else if (announced && protocol::is_announced_by(frame.raw, *announced)) {
         take_proven(frame, now, actions);
     } else {
         secured_.on_echo(frame.raw);

@@ -51,7 +51,10 @@ void on_abort(int) {
 }
 
 Profile profile_of(std::string_view word) {
-    return word == "line" ? Profile::line : word == "counted" ? Profile::counted : Profile::mixed;
+    return word == "line"      ? Profile::line
+           : word == "counted" ? Profile::counted
+           : word == "secured" ? Profile::secured
+                               : Profile::mixed;
 }
 
 class Program {
@@ -162,8 +165,8 @@ int main(int argc, char** argv) {
     app.add_option("--count", options.count, "How many seeds");
     app.add_option("--hours", options.hours, "Go on until the line has printed for so many hours");
     app.add_option("--regressions", options.regressions, "Run the seeds of this file")->check(CLI::ExistingFile);
-    app.add_option("--profile", options.profile, "mixed, counted or line")
-        ->check(CLI::IsMember({"mixed", "counted", "line"}));
+    app.add_option("--profile", options.profile, "mixed, counted, secured or line")
+        ->check(CLI::IsMember({"mixed", "counted", "secured", "line"}));
     app.add_flag("--trace", options.trace, "Print everything that happens");
     app.add_flag("--twice", options.twice, "Run each seed twice and compare");
     app.add_flag("--stop-at-first", options.stop_at_first, "End at the first violation");

@@ -180,8 +180,8 @@ Scenario draw_scenario(std::uint64_t seed, Profile profile) {
         draw_faults(scenario, Random{seed}.fork(3));
         Random serial = Random{seed}.fork(4);
         scenario.damage = serial.chance(0.2) ? 1e-5 * static_cast<double>(serial.spread(10, 1000)) : 0;
-        Random secured = Random{seed}.fork(7);
-        if (secured.chance(0.1)) {
+        if (profile == Profile::secured) {
+            Random secured = Random{seed}.fork(7);
             scenario.crc = true; // one frame at a time: the line must be as slow as that
             scenario.period = std::max<Duration>(scenario.period, 8 * scenario.latency.high);
             scenario.records = std::min(scenario.records, 100U);

@@ -106,6 +106,7 @@ struct Scenario {
 enum class Profile {
     mixed,   ///< everything
     counted, ///< the same, but every printer has its total print counter
+    secured, ///< everything, with CRC32, and noise that spares no byte
     line,    ///< 1 000 prints/s without faults: measures the speed of the simulation
 };
 

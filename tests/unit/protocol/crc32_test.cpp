@@ -21,5 +21,12 @@ TEST(Crc32, shouldCoverEveryByte) {
     EXPECT_NE(crc32(std::string_view{"\0", 1}), crc32(std::string_view{"\0\0", 2}));
 }
 
+TEST(Crc32, shouldNotCoverALineFeedBeforeTheCr) {
+    EXPECT_TRUE(is_announced_by("^0?JL", 3957421711));
+    EXPECT_TRUE(is_announced_by("^0?JL\n", 3957421711));
+    EXPECT_FALSE(is_announced_by("^0?JL\n\n", 3957421711));
+    EXPECT_FALSE(is_announced_by("^0?JM", 3957421711));
+}
+
 } // namespace
 } // namespace linefeed::protocol
