@@ -71,7 +71,7 @@ struct Scenario {
     Span latency{std::chrono::microseconds{100}, std::chrono::microseconds{200}};
     double split = 0; ///< probability that a piece of bytes arrives in several parts
     double slow_write = 0;
-    bool crc = false; ///< frames are secured by CRC32, and the damage is whatever it likes
+    bool crc = false;  ///< frames are secured by CRC32, and the damage is whatever it likes
     double damage = 0; ///< probability that a piece of bytes arrives with one lost or damaged (serial)
     // The disk
     Span commit{std::chrono::microseconds{100}, std::chrono::milliseconds{5}};
