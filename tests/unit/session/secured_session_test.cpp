@@ -226,7 +226,7 @@ TEST_F(SecuredSessionTest, shouldNotTakeOtherBytesForAWord) {
         host_.page(*page);
     }
     static_cast<void>(answer_all());
-    host_.receive("abc\r^0!GO\r^0=NRx\r^0=ZZ1\r" + announced("^0=ZZ1") + announced("^0=SM256\t0\t0\t0\t1"));
+    host_.receive("abc\r^0!GO\r^0?GO\r^0=NRx\r^0=ZZ1\r" + announced("^0=ZZ1") + announced("^0=SM256\t0\t0\t0\t1"));
     EXPECT_EQ(host_.sent(), "") << "the record has not been confirmed";
     EXPECT_EQ(last_, 6U);
 }
