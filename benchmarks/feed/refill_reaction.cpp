@@ -179,7 +179,7 @@ int run(const Options& options) {
     const Duration answer_period = std::chrono::microseconds{options.period_us};
     const Duration poll_interval = answer_period / 2; // so that an inquiry is there when an answer is due
     daemon::JobRunSettings settings;
-    settings.printer = {"127.0.0.1", linefeed.printer.port()};
+    settings.printer.place = link::TcpAddress{"127.0.0.1", linefeed.printer.port()};
     settings.endpoints = link::resolve(settings.printer).value();
     auto& pacing = settings.session.feeder.pacing;
     pacing.poll_least = std::min(pacing.poll_least, poll_interval);
