@@ -135,7 +135,7 @@ Result<feeder::Outcome> PrintCommand::print_runs(spool::Spool& spool, const daem
         const bool doubt_to_settle = outcome.code == feeder::OutcomeCode::records_in_doubt && !outcome.issued;
         // The earlier run may have printed all that is imported so far.
         const bool more_to_come = outcome.code == feeder::OutcomeCode::nothing_to_print && end_open();
-        const bool noise_only = patience.goes_on(run, settings);
+        const bool noise_only = patience.goes_on(outcome, run.progress(), settings);
         if (noise_only) {
             view_.message(feeder::describe(outcome) + "; going on");
         }

@@ -39,8 +39,8 @@ std::string line_words(const link::PrinterAddress& printer, std::size_t record_b
     }
     // A fifth is left to inquiries and their answers.
     const double rate = 0.8 * session::records_per_second(line_of(printer), record_bytes);
-    const std::string least = rate < 1 ? "less than 1" : std::to_string(static_cast<int>(std::floor(rate)));
-    return "the serial line carries about " + least + " records a second (" + std::to_string(serial->baud) +
+    const std::string least = rate < 1 ? "less than 1" : "about " + std::to_string(static_cast<int>(std::floor(rate)));
+    return "the serial line carries " + least + " records a second (" + std::to_string(serial->baud) +
            " baud, records of " + std::to_string(record_bytes) + " bytes, " +
            (printer.crc ? "secured by CRC32" : "not secured") + "): at more the printer runs dry and stops" +
            (printer.crc ? ""
@@ -48,8 +48,10 @@ std::string line_words(const link::PrinterAddress& printer, std::size_t record_b
                           "way into a record");
 }
 
-bool NoisePatience::goes_on(const JobRun& run, JobRunSettings& settings) {
-    const RunProgress progress = run.progress();
+bool NoisePatience::goes_on(const feeder::Outcome& outcome, const RunProgress& progress, JobRunSettings& settings) {
+    if (outcome.code != feeder::OutcomeCode::line_noise) {
+        return false;
+    }
     const bool printed = !progress.range.empty() && progress.printed_through >= progress.range.first();
     fruitless_ = printed ? 0 : fruitless_ + 1;
     // So long the printer may print on without having understood anything, until the stop reaches it: an unproven
@@ -61,7 +63,7 @@ bool NoisePatience::goes_on(const JobRun& run, JobRunSettings& settings) {
     const std::uint64_t so_far = std::min<std::uint64_t>(settings.session.feeder.level_at_most.value(),
                                                          std::max<std::uint64_t>(progress.fifo_depth, least));
     settings.session.feeder.level_at_most = RecordCount{std::max(needed, so_far / 2)};
-    return run.outcome().code == feeder::OutcomeCode::line_noise && fruitless_ < runs_without_print;
+    return fruitless_ < runs_without_print;
 }
 
 } // namespace linefeed::daemon

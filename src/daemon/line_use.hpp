@@ -31,7 +31,7 @@ public:
 
     /// True if the run ended because of noise and the next, with the settings as they are changed, may go on where it
     /// stopped.
-    [[nodiscard]] bool goes_on(const JobRun& run, JobRunSettings& settings);
+    [[nodiscard]] bool goes_on(const feeder::Outcome& outcome, const RunProgress& progress, JobRunSettings& settings);
 
 private:
     int fruitless_ = 0;

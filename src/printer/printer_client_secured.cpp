@@ -28,11 +28,7 @@ bool may_repeat(std::string_view frame) {
 /// Without a listener it is done when the printer says that the frame was right.
 bool PrinterClient::exchange(std::string_view frame, const Listener* listener, Duration reply_timeout) {
     if (group_of(frame) == '$') { // has checks of its own, and is outside of this
-        secured_ = false;
-        const bool sent = write(std::string{frame});
-        const bool done = sent && (listener == nullptr || listen(*listener, reply_timeout));
-        secured_ = true;
-        return done;
+        return write(std::string{frame}) && (listener == nullptr || listen(*listener, reply_timeout));
     }
     for (int tries = 0; tries < max_tries && open_; ++tries) {
         if (try_exchange(frame, listener, reply_timeout)) {
@@ -67,8 +63,7 @@ bool PrinterClient::try_exchange(std::string_view frame, const Listener* listene
         if (word_ == Word::refused || (word_ == Word::right && listener == nullptr)) {
             return word_ == Word::right;
         }
-        if (prolonged || word_ == (was_right ? Word::none : Word::right) ||
-            (settings_.endpoints.serial && !bytes.empty())) {
+        if (prolonged || (!was_right && word_ == Word::right) || (settings_.endpoints.serial && !bytes.empty())) {
             deadline = Clock::now() + reply_timeout;
         }
     }

@@ -141,7 +141,7 @@ Ending Line::run(const JobFacts& facts, RecordRange wanted, const std::optional<
     watch(run, facts.job.id);
     run.join();
     Ending ending{facts.job.id, run.outcome(), run.detail()};
-    ending.noise_only = patience.goes_on(run, settings);
+    ending.noise_only = patience.goes_on(ending.outcome, run.progress(), settings);
     if (ending.noise_only) {
         event(event_kind::printer_warning, facts.job.id, feeder::describe(ending.outcome) + "; going on");
     }

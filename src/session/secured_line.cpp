@@ -127,7 +127,7 @@ SecuredLine::Step SecuredLine::on_answer(Parameter what) {
     if (!is(what)) {
         return Step::wait;
     }
-    if (state_ == State::sent) {
+    if (state_ == State::sent || echoed_ || current_.kind == Kind::once) {
         return settled(Step::next);
     }
     state_ = State::sent;
@@ -149,12 +149,10 @@ SecuredLine::Step SecuredLine::on_time(Instant now) {
         }
         return settled(current_.kind == Kind::inquiry ? Step::lost : Step::next);
     }
-    if (echoed_ || current_.kind == Kind::once) {
-        return settled(Step::next);
-    }
-    if (current_.kind == Kind::record) {
+    if (current_.kind == Kind::record && !echoed_) {
         return settled(Step::unproven);
     }
+    // Whether it is repeated or not: a late word must not be taken for that on the next frame.
     if (++tries_ == max_tries) {
         return settled(current_.kind == Kind::inquiry ? Step::lost : Step::next);
     }

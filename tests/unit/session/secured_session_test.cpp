@@ -121,6 +121,16 @@ protected:
         }
         return {};
     }
+    /// Connects, and gives the session the records of pages_, up to `last`.
+    void arm(std::uint32_t last) {
+        host_.connect();
+        static_cast<void>(answer_all());
+        host_.grant(1, last);
+        static_cast<void>(answer_all());
+        for (const auto& page : pages_) {
+            host_.page(*page);
+        }
+    }
     void print_through(std::uint32_t number) {
         host_.connect();
         static_cast<void>(answer_all());
@@ -218,13 +228,7 @@ TEST_F(SecuredSessionTest, shouldUnderstandAWordWithALength) {
 
 TEST_F(SecuredSessionTest, shouldNotTakeOtherBytesForAWord) {
     fate_ = [](const std::string& frame) { return frame.starts_with("^0=MR7\t") ? Fate::lost : Fate::arrives; };
-    host_.connect();
-    static_cast<void>(answer_all());
-    host_.grant(1, records);
-    static_cast<void>(answer_all());
-    for (const auto& page : pages_) {
-        host_.page(*page);
-    }
+    arm(records);
     static_cast<void>(answer_all());
     host_.receive("abc\r^0!GO\r^0?GO\r^0=NRx\r^0=ZZ1\r" + announced("^0=ZZ1") + announced("^0=SM256\t0\t0\t0\t1"));
     EXPECT_EQ(host_.sent(), "") << "the record has not been confirmed";
@@ -296,13 +300,7 @@ TEST_F(SecuredSessionTest, shouldAskAgainWhenAnAnswerIsDamaged) {
 
 TEST_F(SecuredSessionTest, shouldStopBeforeAnUnprovenRecord) {
     fate_ = [](const std::string& frame) { return frame.starts_with("^0=MR40\t") ? Fate::unannounced : Fate::arrives; };
-    host_.connect();
-    static_cast<void>(answer_all());
-    host_.grant(1, records);
-    static_cast<void>(answer_all());
-    for (const auto& page : pages_) {
-        host_.page(*page);
-    }
+    arm(records);
     static_cast<void>(answer_all());
     ASSERT_EQ(last_, 40U);
     const std::string story = wait_for_end();
@@ -317,13 +315,7 @@ TEST_F(SecuredSessionTest, shouldDoubtAnUnprovenRecordThatIsPrinted) {
         return frame.starts_with("^0=MR") && printing_ ? Fate::unannounced : Fate::arrives;
     };
     pages_ = make_pages(1, 400, 100, plain_text);
-    host_.connect();
-    static_cast<void>(answer_all());
-    host_.grant(1, 400);
-    static_cast<void>(answer_all());
-    for (const auto& page : pages_) {
-        host_.page(*page);
-    }
+    arm(400);
     for (int i = 0; i < 2000 && last_ <= 256; ++i) {
         static_cast<void>(answer_all());
         printed_ = printing_ ? 200 : 0;
