@@ -4,6 +4,8 @@
 #include "protocol/crc32.hpp"
 #include "protocol/frame_encoder.hpp"
 
+#include <algorithm>
+
 namespace linefeed::session {
 
 using protocol::Parameter;
@@ -92,7 +94,7 @@ std::string_view SecuredLine::announced(Instant now) {
     const std::uint32_t crc = protocol::crc32(frame.substr(0, frame.size() - 1));
     protocol::append_frame(announced_, protocol::Group::parameter, "NR" + std::to_string(crc));
     announced_ += frame;
-    deadline_ = now + line_.time_of(announced_.size() + answer_bytes) + patience;
+    deadline_ = now + line_.time_of(announced_.size() + answer_bytes) + patience_;
     return announced_;
 }
 
@@ -144,6 +146,7 @@ SecuredLine::Step SecuredLine::on_time(Instant now) {
         return Step::wait;
     }
     if (state_ == State::syncing) {
+        patience_ = std::min(2 * patience_, most_patience);
         if (++syncs_ < max_syncs) {
             return sync();
         }

@@ -34,11 +34,12 @@ struct LineSettings {
 /// Flow: add…() in the order in which it shall go out; begin() gives the next frame when the one before is settled;
 /// then one on_…() for each fact, and on_time() at deadline().
 class SecuredLine {
-    static constexpr int max_tries = 8;                                  ///< of one frame
-    static constexpr int max_syncs = 5;                                  ///< in a row, unanswered
-    static constexpr Duration patience = std::chrono::milliseconds{200}; ///< besides the time on the line
-    static constexpr std::size_t answer_bytes = 128;                     ///< with its announcement
-    static constexpr std::size_t max_frames = 64;                        ///< waiting
+    static constexpr int max_tries = 8;                                        ///< of one frame
+    static constexpr int max_syncs = 5;                                        ///< in a row, unanswered
+    static constexpr Duration least_patience = std::chrono::milliseconds{200}; ///< besides the time on the line
+    static constexpr Duration most_patience = std::chrono::seconds{2};         ///< for a printer that is slow to answer
+    static constexpr std::size_t answer_bytes = 128;                           ///< with its announcement
+    static constexpr std::size_t max_frames = 64;                              ///< waiting
 
 public:
     /// What becomes of a frame about which the printer says nothing.
@@ -67,7 +68,7 @@ public:
     explicit SecuredLine(const LineSettings& line)
         : line_(line) {}
     /// How long one frame may take on a bad line, besides the bytes.
-    [[nodiscard]] static constexpr Duration repeats_take() { return max_syncs * patience; }
+    [[nodiscard]] static constexpr Duration repeats_take() { return max_syncs * least_patience; }
 
     void add(Frame frame);
     void add_records(RecordRange records);
@@ -123,6 +124,7 @@ private:
     std::string announced_;
     State state_ = State::idle;
     Instant deadline_{};
+    Duration patience_ = least_patience; ///< grows while nothing at all is answered in time
     int tries_ = 0;
     int syncs_ = 0;
     std::size_t sync_ = 0; ///< which inquiry

@@ -34,7 +34,7 @@ protected:
         return std::string{frame.substr(0, frame.size() - 1)};
     }
     Step silence() {
-        now_ += seconds{1};
+        now_ += seconds{3};
         return line_.on_time(now_);
     }
     /// After a silence the printer answers the inquiry that is put in between. The word on the frame before may come
@@ -211,6 +211,22 @@ TEST_F(SecuredLineTest, shouldAskAgainOnlyWhenNoAnswerCanBeOnItsWay) {
     ASSERT_TRUE(code);
     EXPECT_EQ(line_.on_answer(*code), Step::send);
     EXPECT_EQ(send(), "^0?SM");
+    EXPECT_EQ(line_.on_answer(Parameter::SM), Step::next);
+}
+
+/// Its answers come after 350 ms: too late for the first, but not for ever.
+TEST_F(SecuredLineTest, shouldGetUsedToAPrinterThatIsSlowToAnswer) {
+    constexpr Duration slow = std::chrono::milliseconds{350};
+    add(Kind::inquiry, "^0?SM\r");
+    static_cast<void>(begin());
+    EXPECT_EQ(line_.on_time(now_ += slow), Step::send);
+    static_cast<void>(send());
+    EXPECT_EQ(line_.on_time(now_ += slow), Step::send);
+    const auto code = protocol::parameter_from_code(send().substr(3, 2));
+    EXPECT_EQ(line_.on_time(now_ += slow), Step::wait);
+    EXPECT_EQ(line_.on_answer(code.value()), Step::send);
+    static_cast<void>(send());
+    EXPECT_EQ(line_.on_time(now_ += slow), Step::wait);
     EXPECT_EQ(line_.on_answer(Parameter::SM), Step::next);
 }
 
