@@ -30,7 +30,7 @@ quietly cmake --preset coverage -B "$build"
 quietly cmake --build "$build" --parallel "$(nproc)" --target "${libraries[@]/%/_tests}"
 find "$build" -name '*.gcda' -delete
 # Several at once: their counts of the same file are added up under a lock.
-quietly xargs -P "$(nproc)" -I '{}' "$build/bin/{}_tests" --gtest_brief=1 <<< "$(printf '%s\n' "${libraries[@]}")"
+quietly xargs -P "$(nproc)" -I '{}' env "$build/bin/{}_tests" --gtest_brief=1 <<< "$(printf '%s\n' "${libraries[@]}")"
 objects=()
 for library in "${libraries[@]}"; do
     objects+=("$build/src/$library" "$build/tests/unit/$library")
