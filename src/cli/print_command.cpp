@@ -65,6 +65,13 @@ Result<ExitCode> PrintCommand::run(const std::filesystem::path& spool_path, cons
     if (const std::string words = daemon::line_words(printer, daemon::record_bytes(job_)); !words.empty()) {
         view_.message(words);
     }
+    if (options_.expected_rate) {
+        const std::string words =
+            daemon::shortfall_words(printer, daemon::record_bytes(job_), *options_.expected_rate);
+        if (!words.empty()) {
+            view_.message("warning: " + words);
+        }
+    }
     auto code = print(*spool, settings);
     import_.reset(); // before the spool
     return code;

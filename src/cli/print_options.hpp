@@ -27,6 +27,7 @@ struct PrintOptions {
     bool new_job = false;
     bool while_importing = false;
     bool open_nozzle = false;
+    std::optional<std::uint32_t> expected_rate; ///< products a second that the conveyor is to bring
     std::vector<std::uint32_t> acknowledge;
     daemon::RealTimeSettings real_time;
     std::uint32_t connect_timeout_ms = 3000;

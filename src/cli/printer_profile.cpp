@@ -18,7 +18,7 @@ Result<protocol::Profile> ask_profile(const PrintOptions& options) {
     }
     return printer::ask_profile({.address = link::to_string(*address),
                                  .endpoints = std::move(*endpoints),
-                                 .escapes = options.layout.profile.escapes,
+                                 .profile = options.layout.profile,
                                  .connect_timeout = std::chrono::milliseconds{options.connect_timeout_ms},
                                  .reply_timeout = std::chrono::milliseconds{options.reply_timeout_ms}});
 }

@@ -25,22 +25,22 @@ Result<printer::ClientSettings> direct_settings(const std::string& address, cons
     if (!parsed) {
         return parsed.error();
     }
-    const auto profile = protocol::profile_by_name(options.profile);
+    const auto profile = protocol::parse_profile(options.profile);
     if (!profile) {
-        return Failure{FailureKind::usage, "there is no firmware profile \"" + options.profile + '"'};
+        return profile.error();
     }
     auto endpoints = link::resolve(*parsed);
     if (!endpoints) {
         return endpoints.error();
     }
     printer::ClientSettings settings{
-        .address = link::to_string(*parsed), .endpoints = std::move(*endpoints), .escapes = profile->escapes};
+        .address = link::to_string(*parsed), .endpoints = std::move(*endpoints), .profile = *profile};
     if (protocol::is_automatic(*profile)) {
         const auto told = printer::ask_profile(settings);
         if (!told) {
             return told.error();
         }
-        settings.escapes = told->escapes;
+        settings.profile = *told;
     }
     return settings;
 }

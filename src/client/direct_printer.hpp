@@ -14,7 +14,7 @@
 namespace linefeed::client {
 
 struct DirectOptions {
-    std::string profile{"jet3up"}; ///< firmware profile
+    std::string profile{"jet3up"}; ///< see protocol::parse_profile()
     std::filesystem::path errors;  ///< table of error numbers; empty = that of the plant, if there is one
 };
 

@@ -56,8 +56,8 @@ printer::TransferOptions with_progress(cli::SignalWatch& signals, ProgressLine& 
 }
 
 Result<std::string> file_name_in(const PrinterOptions& options, const std::string& path) {
-    const auto profile = protocol::profile_by_name(options.direct.profile);
-    return printer::printer_file(path, profile ? profile->escapes : protocol::EscapeMode::backslash);
+    const auto profile = protocol::parse_profile(options.direct.profile);
+    return profile ? printer::printer_file(path, profile->escapes) : profile.error();
 }
 
 std::string last_part(std::string_view path) {

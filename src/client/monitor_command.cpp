@@ -191,9 +191,8 @@ Result<std::vector<SpokenFrame>> read_recording(const ReplayOptions& options, pr
 }
 
 Result<protocol::EscapeMode> escapes_of(const PrinterOptions& options) {
-    const auto profile = protocol::profile_by_name(options.direct.profile);
-    return profile ? Result<protocol::EscapeMode>{profile->escapes}
-                   : Failure{FailureKind::usage, "there is no firmware profile \"" + options.direct.profile + '"'};
+    const auto profile = protocol::parse_profile(options.direct.profile);
+    return profile ? Result<protocol::EscapeMode>{profile->escapes} : profile.error();
 }
 
 /// Anything but inquiries: records would be printed again.

@@ -3,6 +3,7 @@
 #include "cli/progress_view.hpp"
 #include "cli/wall_time.hpp"
 
+#include <array>
 #include <cstdio>
 
 namespace linefeed::client {
@@ -27,6 +28,31 @@ Cell state_of(const Json& printer) {
         return held ? Cell{rest, Colour::warning} : Cell{rest};
     }
     return link == "up" ? Cell{phase, Colour::good} : Cell{phase + ", no link", Colour::bad};
+}
+
+/// What a probe has found that is not the same for every printer.
+std::string habits_of(const Json& probe) {
+    struct Habit {
+        const char* key;
+        const char* yes; ///< nullptr = goes without saying
+        const char* no;
+    };
+    constexpr std::array habits{Habit{"keeps_stop_at", "keeps its stop point", "does not keep a stop point"},
+                                Habit{"mailing_counts_print_gos", "counts PrintGos", nullptr},
+                                Habit{"status_tells_job_changes", nullptr, "does not tell job changes"},
+                                Habit{"total_counter", nullptr, "no total counter"},
+                                Habit{"tank_levels", "tells tank levels", nullptr},
+                                Habit{"doubled_backslashes", "doubles backslashes", nullptr},
+                                Habit{"lengths_on", "lengths are on", nullptr},
+                                Habit{"echo_on", "echo is on", nullptr},
+                                Habit{"filled_blocks_on", "blocks are filled", nullptr}};
+    std::string words;
+    for (const Habit& habit : habits) {
+        const Json& found = member(probe, habit.key);
+        const char* const word = !found.is_boolean() ? nullptr : found.get<bool>() ? habit.yes : habit.no;
+        words += word == nullptr ? std::string{} : (words.empty() ? "" : ", ") + std::string{word};
+    }
+    return words;
 }
 
 /// The queue behind the job that is on the line.
@@ -155,6 +181,9 @@ std::string printer_text(const Json& printer, const Screen& screen) {
     const std::string known = text(printer, "known_serial_number");
     facts.add("known as", {known == text(printer, "serial_number") ? "" : known, Colour::warning});
     facts.add("firmware", {text(printer, "firmware")});
+    if (const Json& probe = member(printer, "probe"); probe.is_object()) {
+        facts.add("probed", {local_time(printer, "probed_ns") + ": " + habits_of(probe)});
+    }
     facts.add("total prints", {number_text(printer, "total_prints")});
     facts.add("panel", {flag(printer, "panel_suspended") ? "suspended by linefeed" : "", Colour::warning});
     facts.add("job", {number_text(printer, "job")});

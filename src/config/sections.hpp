@@ -58,6 +58,7 @@ void visit(V& v, S& s) {
     v.value("errors", s.errors, MapOf<ErrorNumberKey, Choice<ErrorPolicy>>{error_policies, max_error_numbers});
     v.value("poll_min", s.pacing.poll_min, DurationValue{400us, 100ms});
     v.value("poll_max", s.pacing.poll_max, DurationValue{1ms, 1s});
+    v.value("expected_rate", s.expected_rate, Maybe{Whole<std::uint32_t>{1, 10'000}});
     v.value("connect_timeout", s.connect_timeout, DurationValue{shortest_timeout, longest_timeout});
     v.value("reply_timeout", s.reply_timeout, DurationValue{shortest_timeout, longest_timeout});
     v.value("watch_interval", s.watch_interval, DurationValue{0us, 1h});

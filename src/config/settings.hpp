@@ -47,6 +47,9 @@ struct PrinterSettings {
     std::map<std::uint32_t, ErrorPolicy> errors{};
     /// Poll bounds: poll_min 400 µs…100 ms, poll_max 1 ms…1 s, poll_min ≤ poll_max. The rest is not a setting.
     feeder::PacingSettings pacing{};
+    /// Products a second, 1…10000, that the conveyor is to bring: a start warns where the line to the printer carries
+    /// less. Absent = not known.
+    std::optional<std::uint32_t> expected_rate{};
     Duration connect_timeout = std::chrono::seconds{3}; ///< 100 ms…10 min
     Duration reply_timeout = std::chrono::seconds{2};   ///< 100 ms…10 min
     /// How often it is looked at while linefeed does nothing with it; 0 (never), or 1 s…1 h.

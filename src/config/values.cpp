@@ -310,19 +310,18 @@ std::optional<std::size_t> read_word(const Node& node, const std::string& key, C
     return static_cast<std::size_t>(word - words.begin());
 }
 
-std::vector<std::string> ProfileValue::names() {
-    std::vector<std::string> names;
-    names.reserve(protocol::profiles.size());
-    for (const protocol::Profile& profile : protocol::profiles) {
-        names.emplace_back(profile.name);
-    }
-    return names;
-}
-
 bool ProfileValue::read(const Node& node, const std::string& key, Context& context, protocol::Profile& out) const {
-    const auto index = read_word(node, key, context, names());
-    out = index ? protocol::profiles[*index] : out;
-    return index.has_value();
+    const auto profile = protocol::parse_profile(node.text);
+    if (node.kind != Node::Kind::scalar || !profile) {
+        if (node.kind == Node::Kind::scalar) {
+            context.refuse(node.place, key, profile.error().message);
+        } else {
+            refuse_value(node, key, "a firmware profile", context);
+        }
+        return false;
+    }
+    out = *profile;
+    return true;
 }
 
 bool OrientationValue::read(const Node& node, const std::string& key, Context& context, T& out) const {

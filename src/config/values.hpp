@@ -156,13 +156,12 @@ struct Choice {
     [[nodiscard]] Expectation expects() const { return {"choice", words()}; }
 };
 
-/// The name of a firmware profile.
+/// A firmware profile, see protocol::parse_profile().
 struct ProfileValue {
     using T = protocol::Profile;
-    [[nodiscard]] static std::vector<std::string> names();
     [[nodiscard]] bool read(const Node& node, const std::string& key, Context& context, protocol::Profile& out) const;
-    [[nodiscard]] Json write(const protocol::Profile& value) const { return value.name; }
-    [[nodiscard]] Expectation expects() const { return {"choice", names()}; }
+    [[nodiscard]] Json write(const protocol::Profile& value) const { return to_string(value); }
+    [[nodiscard]] Expectation expects() const { return {"text", {}, 1, 200}; }
 };
 
 /// 0, 90, 180 or 270 degrees.

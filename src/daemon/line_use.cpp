@@ -16,6 +16,15 @@ session::LineSettings line_of(const link::PrinterAddress& printer) {
     return {.bytes_per_second = serial == nullptr ? 0.0 : link::bytes_per_second(*serial), .crc = printer.crc};
 }
 
+/// A fifth is left to inquiries and their answers.
+double carried_per_second(const link::PrinterAddress& printer, std::size_t record_bytes) {
+    return 0.8 * session::records_per_second(line_of(printer), record_bytes);
+}
+
+std::string rate_text(double rate) {
+    return rate < 1 ? "less than 1" : "about " + std::to_string(static_cast<int>(std::floor(rate)));
+}
+
 } // namespace
 
 std::size_t record_bytes(const spool::Job& job) {
@@ -37,15 +46,25 @@ std::string line_words(const link::PrinterAddress& printer, std::size_t record_b
     if (serial == nullptr) {
         return {};
     }
-    // A fifth is left to inquiries and their answers.
-    const double rate = 0.8 * session::records_per_second(line_of(printer), record_bytes);
-    const std::string least = rate < 1 ? "less than 1" : "about " + std::to_string(static_cast<int>(std::floor(rate)));
-    return "the serial line carries " + least + " records a second (" + std::to_string(serial->baud) +
+    return "the serial line carries " + rate_text(carried_per_second(printer, record_bytes)) + " records a second (" + std::to_string(serial->baud) +
            " baud, records of " + std::to_string(record_bytes) + " bytes, " +
            (printer.crc ? "secured by CRC32" : "not secured") + "): at more the printer runs dry and stops" +
            (printer.crc ? ""
                         : ". Without crc=on in the address nobody notices a letter that the line has changed on its "
                           "way into a record");
+}
+
+std::string shortfall_words(const link::PrinterAddress& printer, std::size_t record_bytes,
+                            std::uint32_t products_per_second) {
+    const link::SerialAddress* const serial = printer.serial();
+    const double rate = carried_per_second(printer, record_bytes);
+    if (serial == nullptr || rate >= products_per_second) {
+        return {};
+    }
+    return "the conveyor is to bring " + std::to_string(products_per_second) +
+           " products a second, and the serial line carries " + rate_text(rate) +
+           ": the printer will run dry and stop. Slow the conveyor down, raise the baud rate here and at the printer, "
+           "shorten the records, or connect the printer by Ethernet";
 }
 
 bool NoisePatience::goes_on(const feeder::Outcome& outcome, const RunProgress& progress, JobRunSettings& settings) {

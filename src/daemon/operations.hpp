@@ -111,6 +111,8 @@ struct PrinterView {
     std::string serial_number;       ///< `?VS`; empty = never heard of
     std::string known_serial_number; ///< of the machine that jobs may start on; empty = whichever answers first
     std::string firmware;
+    std::string probe;          ///< what the last probe found, JSON; empty = not probed since it is this machine
+    std::int64_t probed_ns = 0; ///< wall time
     std::optional<std::uint64_t> total_prints; ///< `?CC`
     protocol::PrinterError error{};            ///< pending, as last reported
     std::string error_meaning;                 ///< of the table of error numbers; empty = not listed

@@ -2,6 +2,7 @@
 #include "daemon/preflight.hpp"
 
 #include "base/assert.hpp"
+#include "daemon/line_use.hpp"
 #include "feeder/mailing_error.hpp"
 
 #include <algorithm>
@@ -48,14 +49,24 @@ Finding reachable(const PreflightFacts& facts) {
     return ok(check, "the printer answers");
 }
 
+Finding properties_unknown(const protocol::Profile& profile) {
+    return problem("profile",
+                   to_string(profile) + ", which knows no properties of records; those of the job are mirrored or turned",
+                   "Mirror or turn the objects of the printer's job instead, and import the file again without that.");
+}
+
 /// Of an automatic profile.
 Finding told_profile(const protocol::VersionInfo& version, const PreflightRules& rules) {
     constexpr const char* check = "profile";
+    const protocol::Profile& chosen = rules.printer.profile;
     const auto told = protocol::profile_for(version.type, version.firmware);
-    const bool escapes_are_right = told && told->escapes == protocol::EscapeMode::backslash;
-    if (!escapes_are_right && rules.records_have_escapes && rules.records_have_escapes()) {
+    const protocol::Profile valid = told ? with_own_properties(*told, chosen.own) : chosen;
+    if (!valid.record_properties && rules.records.have_properties) {
+        return properties_unknown(valid);
+    }
+    if (valid.escapes != protocol::EscapeMode::backslash && rules.records.have_escapes && rules.records.have_escapes()) {
         return told ? problem(check,
-                              "auto: " + std::string{told->name} +
+                              "auto: " + to_string(valid) +
                                   ", which knows no escapes; the job was imported for " +
                                   "firmware that does, and ^ and \\ would come out wrong",
                               "Import its file again for this printer.")
@@ -65,7 +76,7 @@ Finding told_profile(const protocol::VersionInfo& version, const PreflightRules&
                               "Look up the printer's firmware, name its profile in the settings (jet3up, jet3, jet2neo "
                               "or jet2neo-v71), and start again.");
     }
-    return told ? ok(check, "auto: " + std::string{told->name} + ", since it is a " + version.type + ", firmware " +
+    return told ? ok(check, "auto: " + to_string(valid) + ", since it is a " + version.type + ", firmware " +
                                 version.firmware)
                 : warning(check, "auto, but the printer does not say a type and a firmware that are known",
                           "Name its profile in the settings: until then records with ^ or \\ are refused.");
@@ -76,26 +87,29 @@ Finding profile(const protocol::VersionInfo& version, const PreflightRules& rule
     if (protocol::is_automatic(rules.printer.profile)) {
         return told_profile(version, rules);
     }
-    const std::string_view chosen = rules.printer.profile.name;
+    if (!rules.printer.profile.record_properties && rules.records.have_properties) {
+        return properties_unknown(rules.printer.profile);
+    }
+    const std::string chosen = to_string(rules.printer.profile);
     const auto told = protocol::profile_for(version.type, version.firmware);
     const bool says_neo = version.type.find("2neo") != std::string::npos;
     const bool chosen_neo = chosen.starts_with("jet2neo");
     if (version.type.empty()) {
-        return ok(check, std::string{chosen} + ", as configured; the printer does not say its type");
+        return ok(check, chosen + ", as configured; the printer does not say its type");
     }
-    if (told && says_neo == chosen_neo && told->escapes != rules.printer.profile.escapes) {
+    if (told && says_neo == chosen_neo && with_own_properties(*told, rules.printer.profile.own).escapes != rules.printer.profile.escapes) {
         return warning(
             check,
             "the printer says that it is a " + version.type + ", firmware " + version.firmware + ": that is " +
-                std::string{told->name} + ", and its profile is " + std::string{chosen},
+                std::string{told->name} + ", and its profile is " + chosen,
             "Set the printer's profile to what it is, or to auto: with a wrong one, ^ and \\ come out wrong.");
     }
     if (says_neo != chosen_neo) {
         return warning(check,
-                       "the printer says that it is a " + version.type + ", and its profile is " + std::string{chosen},
+                       "the printer says that it is a " + version.type + ", and its profile is " + chosen,
                        "Set the printer's profile to what it is: with a wrong one, ^ and \\ may come out wrong.");
     }
-    return ok(check, std::string{chosen} + " fits " + version.type);
+    return ok(check, chosen + " fits " + version.type);
 }
 
 Finding ready(const protocol::MachineStatus& machine, const PreflightRules& rules) {
@@ -202,7 +216,12 @@ Finding fifo(const std::optional<protocol::MailStatus>& mail, const PreflightRul
     return ok(check, room + "; the start fills it and reads back whether the printer took them");
 }
 
-Finding stop_point(const protocol::MailStatus& mail) {
+Finding stop_point(const protocol::MailStatus& mail, const PreflightRules& rules) {
+    if (!rules.keeps_stop_at.value_or(true)) {
+        return warning("stop_point", "by the last probe its firmware does not keep a stop point",
+                       "linefeed ends the job with a blank record instead: the product after the last may come out "
+                       "blank.");
+    }
     const std::string stands =
         mail.stop_at == RecordNumber{} ? "none is set" : "it stands at " + std::to_string(mail.stop_at.value());
     return ok("stop_point", stands + "; the start sets it and reads it back");
@@ -246,6 +265,21 @@ Finding modes(const printer::ConversationOddities& oddities) {
                        "Look at the cable, and on a serial line at baud rate and handshake.");
     }
     return ok(check, "nothing unusual is switched on");
+}
+
+/// What a serial line carries; absent for any other.
+std::optional<Finding> line(const PreflightRules& rules) {
+    constexpr const char* check = "line";
+    const link::PrinterAddress& printer = rules.printer.address;
+    const std::size_t bytes = rules.records.bytes > 0 ? rules.records.bytes : record_bytes({});
+    if (rules.printer.expected_rate) {
+        if (const std::string words = shortfall_words(printer, bytes, *rules.printer.expected_rate); !words.empty()) {
+            const std::size_t advice = words.find(". ") + 2;
+            return warning(check, words.substr(0, advice - 2), words.substr(advice) + '.');
+        }
+    }
+    const std::string carries = line_words(printer, bytes);
+    return carries.empty() ? std::nullopt : std::optional{ok(check, carries)};
 }
 
 Finding connections(bool second_is_answered) {
@@ -323,12 +357,15 @@ std::vector<Finding> judge(const PreflightFacts& facts, const PreflightRules& ru
     findings.push_back(job_file(facts.job, rules));
     findings.push_back(fifo(facts.mail, rules));
     if (facts.mail) {
-        findings.push_back(stop_point(*facts.mail));
+        findings.push_back(stop_point(*facts.mail, rules));
     }
     if (auto found = counter(facts.counters)) {
         findings.push_back(*std::move(found));
     }
     findings.push_back(modes(facts.oddities));
+    if (auto found = line(rules)) {
+        findings.push_back(*std::move(found));
+    }
     if (facts.second_connection) {
         findings.push_back(connections(*facts.second_connection));
     }

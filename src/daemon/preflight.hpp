@@ -30,6 +30,14 @@ struct PreflightFacts {
 /// Blocks: at most a connection time-out for each endpoint and some reply time-outs.
 [[nodiscard]] PreflightFacts gather_facts(const printer::ClientSettings& settings);
 
+/// What the job that is to start has for records.
+struct RecordFacts {
+    /// Any was written with an escape. Asked only where it matters, as it may take time; empty = there is no job yet.
+    std::function<bool()> have_escapes{};
+    bool have_properties = false; ///< they are mirrored or turned
+    std::size_t bytes = 0;        ///< of one on average, see record_bytes(); 0 = there is no job yet
+};
+
 /// What is expected of the printer.
 struct PreflightRules {
     const config::Settings& settings;
@@ -37,18 +45,18 @@ struct PreflightRules {
     std::string known_serial_number{}; ///< of the last time; empty = unknown
     /// A run of ours may be under way on it, which the start would stop or go on with.
     bool may_be_printing = false;
-    /// Whether any record of the job that is to start was written with an escape. Asked only where it matters, as it
-    /// may take time; empty = there is no job yet.
-    std::function<bool()> records_have_escapes{};
+    RecordFacts records{};
     /// Other printers of the settings behind which the same machine was found.
     std::vector<std::string> same_machine{};
+    /// Whether its firmware keeps a stop point, by the last probe; absent = not probed.
+    std::optional<bool> keeps_stop_at{};
 };
 
 /// Which machine it is, for a printer that has told it.
 [[nodiscard]] Finding judge_identity(const protocol::VersionInfo& version, const PreflightRules& rules);
 
 /// In this order: reachable, identity, profile, ready, nozzle, cover, errors, job_file, fifo, stop_point, counter,
-/// modes, connections. What could not be looked at is left out.
+/// modes, line, connections. What could not be looked at is left out.
 [[nodiscard]] std::vector<Finding> judge(const PreflightFacts& facts, const PreflightRules& rules);
 
 /// None of them is a problem.

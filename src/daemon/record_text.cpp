@@ -60,8 +60,9 @@ RecordFormat record_format(const spool::Job& job) {
     RecordFormat format;
     const Json layout = Json::parse(job.spec.layout, nullptr, false);
     if (layout.is_object()) {
-        const auto profile = protocol::profile_by_name(layout.value("profile", std::string{}));
+        const auto profile = protocol::parse_profile(layout.value("profile", std::string{}));
         format.escapes = profile ? profile->escapes : format.escapes;
+        format.properties = layout.value("mirrored", false) || layout.contains("orientation");
     }
     const Json report = Json::parse(job.import_report, nullptr, false);
     if (report.is_object() && report.contains("columns") && !report["columns"].empty()) {

@@ -15,6 +15,7 @@ namespace linefeed::daemon {
 struct RecordFormat {
     std::vector<protocol::Charset> charsets{protocol::Charset::latin1}; ///< one for each field
     protocol::EscapeMode escapes = protocol::EscapeMode::backslash;
+    bool properties = false; ///< every record is mirrored or turned
 };
 
 [[nodiscard]] RecordFormat record_format(const spool::Job& job);

@@ -67,6 +67,12 @@ Result<OpenedSource> with_options(Result<std::unique_ptr<RowSource>> source, con
     if (!source) {
         return source.error();
     }
+    if (!layout.profile.record_properties && !layout.properties.empty()) {
+        return Failure{FailureKind::usage,
+                       "the firmware of this printer (" + protocol::to_string(layout.profile) +
+                           ") turns or mirrors no single record: do that in the printer's job, and leave out the "
+                           "orientation and what mirrors"};
+    }
     const auto charsets = charsets_for(layout.encodings, (*source)->column_names());
     if (!charsets) {
         return charsets.error();
@@ -80,7 +86,7 @@ Result<OpenedSource> with_options(Result<std::unique_ptr<RowSource>> source, con
     for (const std::size_t column : *graphics) {
         opened.options.charsets[column] = protocol::Charset::latin1;
     }
-    opened.options.graphics = {*std::move(graphics), layout.profile.graphic_height(),
+    opened.options.graphics = {*std::move(graphics), layout.profile.graphic_height,
                                layout.graphics_folder.value_or(beside)};
     opened.options.escapes = layout.profile.escapes;
     opened.options.properties = layout.properties;
@@ -106,7 +112,7 @@ std::string canonical_json(const Layout& layout) {
             json.add("graphics_folder", layout.graphics_folder->string());
         }
     }
-    json.add("profile", layout.profile.name);
+    json.add("profile", protocol::to_string(layout.profile));
     if (layout.table) {
         json.add("table", *layout.table);
     }

@@ -8,14 +8,6 @@ namespace linefeed {
 
 namespace {
 
-std::string profile_names() {
-    std::string names;
-    for (const auto& profile : protocol::profiles) {
-        names += (names.empty() ? "" : ", ") + std::string{profile.name};
-    }
-    return names;
-}
-
 } // namespace
 
 cli::ExitCode usage_error(const std::string& problem) {
@@ -88,7 +80,7 @@ void add_layout(CLI::App& command, intake::Layout& layout, RawLayout& raw) {
         ->allow_extra_args(false)
         ->delimiter(',');
     command.add_option("--graphics-folder", raw.graphics_folder, "Where these images are; default: where the file is");
-    command.add_option("--profile", raw.profile, "Firmware profile: " + profile_names())->capture_default_str();
+    command.add_option("--profile", raw.profile, "Firmware profile: " + protocol::profile_names())->capture_default_str();
     command.add_option("--base", layout.base, "Record k has number BASE + k")->capture_default_str();
     command.add_flag("--mirrored", layout.properties.mirrored, "Print every record mirrored");
     command.add_option("--orientation", raw.orientation, "Turn every record by 0, 90, 180 or 270 degrees")
@@ -107,9 +99,9 @@ std::string finish_layout(intake::Layout& layout, const RawLayout& raw) {
     } else if (!raw.delimiter.empty()) {
         return "--delimiter: expected one character, or tab";
     }
-    const auto profile = protocol::profile_by_name(raw.profile);
+    const auto profile = protocol::parse_profile(raw.profile);
     if (!profile) {
-        return "--profile: \"" + raw.profile + "\" is not known; one of: " + profile_names();
+        return "--profile: " + profile.error().message;
     }
     layout.profile = *profile;
     if (raw.orientation) {

@@ -36,6 +36,11 @@ CLI::App& add_print(CLI::App& app, PrintOptions& options, RawPrintOptions& raw) 
                    "read more slowly than the line prints, the line stops too (exit code 4)");
     print.add_flag("--open-nozzle", options.open_nozzle, "Open the nozzle if it is closed (takes 30 to 60 s)");
     print
+        .add_option("--expected-rate", options.expected_rate,
+                    "Products a second that the conveyor is to bring: a warning before the start where a serial line "
+                    "carries less")
+        ->check(CLI::Range(1, 10000));
+    print
         .add_option("--acknowledge", options.acknowledge,
                     "Error numbers that may be acknowledged before the start, separated by commas")
         ->allow_extra_args(false)

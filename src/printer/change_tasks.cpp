@@ -194,7 +194,7 @@ Result<Json> set_text(PrinterClient& printer, const Order& order) {
         return Failure{FailureKind::usage, "the text must have at most " + std::to_string(protocol::max_extern_text) +
                                                " bytes, and no line end"};
     }
-    if (printer.settings().escapes == protocol::EscapeMode::none &&
+    if (printer.settings().profile.escapes == protocol::EscapeMode::none &&
         wanted.text.find_first_of("^\\") != std::string::npos) {
         return Failure{FailureKind::usage, "the text has ^ or \\, which firmware without escapes cannot be told"};
     }

@@ -72,7 +72,7 @@ Result<Json> list(PrinterClient& printer, const Order& order) {
         const auto present = present_directories(printer);
         return present ? json_result({{"path", ""}, {"entries", entries_json(*present)}}) : present.error();
     }
-    const auto path = printer_path(order.arguments.text("path"), printer.settings().escapes);
+    const auto path = printer_path(order.arguments.text("path"), printer.settings().profile.escapes);
     if (!path) {
         return path.error();
     }
@@ -81,7 +81,7 @@ Result<Json> list(PrinterClient& printer, const Order& order) {
 }
 
 Result<Json> remove(PrinterClient& printer, const Order& order) {
-    const auto path = printer_file(order.arguments.text("path"), printer.settings().escapes);
+    const auto path = printer_file(order.arguments.text("path"), printer.settings().profile.escapes);
     if (!path) {
         return path.error();
     }
@@ -111,7 +111,7 @@ Result<Json> jobs(PrinterClient& printer, const Order& /*order*/) {
 }
 
 Result<Json> load(PrinterClient& printer, const Order& order) {
-    const auto path = printer_job(order.arguments.text("job"), printer.settings().escapes);
+    const auto path = printer_job(order.arguments.text("job"), printer.settings().profile.escapes);
     if (!path) {
         return path.error();
     }
@@ -136,7 +136,7 @@ Result<Json> put_script(PrinterClient& printer, const Order& order) {
     if (!bytes) {
         return Failure{FailureKind::input, "the script has a character that Windows-1252 does not have"};
     }
-    const auto lines = script_lines(*bytes, printer.settings().escapes);
+    const auto lines = script_lines(*bytes, printer.settings().profile.escapes);
     if (!lines) {
         return lines.error();
     }

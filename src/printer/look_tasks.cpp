@@ -40,12 +40,18 @@ Json error_json(const protocol::PrinterError& error, const Order& order) {
     return json;
 }
 
+/// With the unit of its speeds, which depends on the firmware.
+Json with_speed_unit(Json json, const PrinterClient& printer) {
+    json["speed_unit"] = printer.settings().profile.speed_in_metres ? "m/min" : "dm/min";
+    return json;
+}
+
 Result<Json> status(PrinterClient& printer, const Order& order) {
     const auto machine = asked<protocol::MachineStatus>(printer, Parameter::RS);
     if (!machine) {
         return machine.error();
     }
-    Json json = fields_of(*machine);
+    Json json = with_speed_unit(fields_of(*machine), printer);
     json["error"] = error_json(machine->error, order);
     const bool standby = machine->machine == protocol::MachineState::standby; // then it answers nothing else
     const auto job = standby ? std::nullopt : printer.ask<protocol::JobName>(Parameter::JL);

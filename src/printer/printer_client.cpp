@@ -16,7 +16,7 @@ using protocol::Message;
 
 PrinterClient::PrinterClient(const ClientSettings& settings)
     : settings_(settings)
-    , decoder_(settings.escapes)
+    , decoder_(settings.profile.escapes)
     , secured_(settings.endpoints.crc) {}
 
 /// The last command may still be on its way out of a serial port.
@@ -58,7 +58,7 @@ bool PrinterClient::deliver(const std::string& frame) {
 
 std::string PrinterClient::frame_of(const Message& message) const {
     std::string bytes;
-    protocol::append_any_message(bytes, message, settings_.escapes);
+    protocol::append_any_message(bytes, message, settings_.profile.escapes);
     return bytes;
 }
 
@@ -170,7 +170,7 @@ std::string_view PrinterClient::read(Clock::time_point deadline) {
 
 Message PrinterClient::message_of(const protocol::Frame& frame) {
     oddities_.lengths = oddities_.lengths || frame.has_length;
-    Message message = protocol::parse_message(frame, settings_.escapes);
+    Message message = protocol::parse_message(frame, settings_.profile.escapes);
     if (const auto* const malformed = std::get_if<protocol::MalformedMessage>(&message)) {
         oddities_.damaged_bytes += malformed->payload.size();
     }

@@ -5,9 +5,9 @@
 #include "base/failure.hpp"
 #include "base/time.hpp"
 #include "link/dialer.hpp"
-#include "protocol/escapes.hpp"
 #include "protocol/frame_decoder.hpp"
 #include "protocol/messages.hpp"
+#include "protocol/profile.hpp"
 
 #include <boost/asio/io_context.hpp>
 
@@ -25,7 +25,7 @@ namespace linefeed::printer {
 struct ClientSettings {
     std::string address;       ///< for people
     link::Endpoints endpoints; ///< resolved
-    protocol::EscapeMode escapes = protocol::EscapeMode::backslash;
+    protocol::Profile profile = protocol::profiles.front();
     Duration connect_timeout = std::chrono::seconds{3}; ///< for each endpoint
     Duration reply_timeout = std::chrono::seconds{2};
 };

@@ -128,7 +128,7 @@ Json firmware_json(const std::optional<protocol::VersionInfo>& version) {
     json["record_properties"] = profile->record_properties;
     json["output_control"] = profile->output_control;
     json["counter_limits"] = profile->counter_parameters;
-    json["graphic_height"] = profile->graphic_height();
+    json["graphic_height"] = profile->graphic_height;
     json["inputs"] = profile->configured_inputs();
     json["outputs"] = profile->outputs();
     return json;
@@ -176,7 +176,10 @@ constexpr std::array list{
          "What its firmware is and does; only while it stands still with an empty FIFO",
          uses,
          {},
-         probe},
+         probe,
+         nullptr,
+         false,
+         true},
 };
 
 } // namespace

@@ -105,7 +105,7 @@ Result<Json> send(PrinterClient& printer, const Order& order) {
     if (!frame) {
         return frame.error();
     }
-    if (has_second_frame(frame->payload, printer.settings().escapes)) {
+    if (has_second_frame(frame->payload, printer.settings().profile.escapes)) {
         return second_frame();
     }
     std::string bytes;
@@ -181,7 +181,7 @@ Result<Json> query(PrinterClient& printer, const Order& order) {
     if (!right || !argument || argument->find_first_of("\r\n") != std::string::npos) {
         return wrong("an inquiry has two letters, e.g. SM, and at most one line behind them");
     }
-    if (has_second_frame(*argument, printer.settings().escapes)) {
+    if (has_second_frame(*argument, printer.settings().profile.escapes)) {
         return second_frame();
     }
     std::string bytes;

@@ -104,6 +104,8 @@ struct Task {
     Result<CommandId> (*sends)(const Arguments& arguments) = nullptr;
     /// On the command line no subcommand of its own, but options of the look whose name stands before " set".
     bool options_of_look = false;
+    /// The service keeps the answer with the printer: a probe.
+    bool remembered = false;
 };
 
 /// How careful this task with these arguments has to be. FailureKind::usage if what it would send is no command.

@@ -13,7 +13,7 @@ Result<protocol::Profile> ask_profile(const ClientSettings& settings) {
     const auto version = ask_version(**printer);
     const auto profile = version ? protocol::profile_for(version->type, version->firmware) : std::nullopt;
     if (profile) {
-        return *profile;
+        return with_own_properties(*profile, settings.profile.own);
     }
     const std::string told = version
                                  ? "says that it is a \"" + protocol::printable(version->type) + "\" with firmware \"" +

@@ -17,6 +17,7 @@ Line::Line(const LineServices& services, std::string printer, SharedSettings set
     , settings_(std::move(settings))
     , held_(past.held)
     , known_serial_number_(std::move(past.serial_number))
+    , memory_(std::move(past.memory))
     , thread_([this] { serve(); }) {}
 
 Line::~Line() {
@@ -233,7 +234,7 @@ daemon::PrinterView Line::view() {
     view.phase = phase_of_printer(at, checking_);
     if (const config::PrinterSettings* const own = settings_->printer(printer_)) {
         view.address = link::to_string(own->address);
-        view.profile = own->profile.name;
+        view.profile = to_string(own->profile);
         view.autostart = own->queue.autostart;
     }
     if (at) {
@@ -260,6 +261,10 @@ daemon::PrinterView Line::view() {
     if (heard_.version) {
         view.serial_number = heard_.version->serial_number;
         view.firmware = heard_.version->firmware;
+    }
+    if (memory_) {
+        view.probe = memory_->probe;
+        view.probed_ns = memory_->probed_ns;
     }
     view.total_prints = heard_.total_prints;
     view.panel_suspended = panel_ && panel_->held();

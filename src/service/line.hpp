@@ -59,7 +59,8 @@ public:
     /// What is remembered of the printer.
     struct Past {
         bool held = false;         ///< as by hold(), or a job has waited there before the service was started
-        std::string serial_number; ///< of the machine; empty = not known yet
+        std::string serial_number{}; ///< of the machine; empty = not known yet
+        std::optional<spool::PrinterMemory> memory{};
     };
     Line(const LineServices& services, std::string printer, SharedSettings settings, Past past);
     ~Line();
@@ -135,13 +136,17 @@ private:
     /// What a look at it is for: a job that is to start there, or nothing yet.
     struct Purpose {
         bool may_be_printing = false;
-        std::function<bool()> records_have_escapes{};
+        daemon::RecordFacts records{};
     };
     [[nodiscard]] std::vector<daemon::Finding> look_at_printer(const printer::ClientSettings& client,
                                                                const Purpose& purpose);
     [[nodiscard]] std::optional<protocol::VersionInfo> look_for_identity(const printer::ClientSettings& client);
     void glance();
     void learn_identity(const std::optional<protocol::VersionInfo>& version);
+    void remember(const protocol::VersionInfo& version);
+    void remember_probe(std::string_view found);
+    void write_memory(const spool::PrinterMemory& memory);
+    [[nodiscard]] std::optional<bool> keeps_stop_at() const;
     [[nodiscard]] std::vector<std::string> printers_of_same_machine(const std::string& serial_number);
     void hear(const daemon::PreflightFacts& facts);
     void hear(const printer::Look& look);
@@ -195,6 +200,7 @@ private:
     };
     Heard heard_;
     std::string known_serial_number_; ///< of the machine that jobs may start on; empty = not known yet
+    std::optional<spool::PrinterMemory> memory_;
     std::optional<std::chrono::steady_clock::time_point> looked_at_; ///< as idle; absent = never, or in use since
     std::optional<daemon::LinkState> link_;                          ///< by the last look; absent as looked_at_
     std::uint32_t failed_looks_ = 0;                                 ///< in a row

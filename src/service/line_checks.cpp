@@ -2,6 +2,7 @@
 // knows of, and it is ready.
 #include "daemon/events.hpp"
 #include "daemon/other_jobs.hpp"
+#include "daemon/record_text.hpp"
 #include "service/line.hpp"
 
 namespace linefeed::service {
@@ -120,7 +121,10 @@ Result<std::optional<Ending>> Line::check_printer(const spool::Job& job, bool ma
         return !found || *found;
     };
     const std::vector<daemon::Finding> findings =
-        look_at_printer(*client, {.may_be_printing = may_be_printing, .records_have_escapes = have_escapes});
+        look_at_printer(*client, {.may_be_printing = may_be_printing,
+                                  .records = {.have_escapes = have_escapes,
+                                              .have_properties = daemon::record_format(job).properties,
+                                              .bytes = daemon::record_bytes(job)}});
     {
         const std::lock_guard lock{mutex_};
         checking_ = false;

@@ -11,13 +11,14 @@
 
 namespace linefeed::service {
 
-/// That of the settings; an automatic one as the printer has told, if it has.
+/// That of the settings; an automatic one as the printer has told, now or before the service was started.
 protocol::Profile Line::known_profile(const config::PrinterSettings& own) const {
     const std::lock_guard lock{mutex_};
-    const auto told = protocol::is_automatic(own.profile) && heard_.version
-                          ? protocol::profile_for(heard_.version->type, heard_.version->firmware)
-                          : std::nullopt;
-    return told.value_or(own.profile);
+    const auto told = !protocol::is_automatic(own.profile) ? std::nullopt
+                      : heard_.version ? protocol::profile_for(heard_.version->type, heard_.version->firmware)
+                      : memory_        ? protocol::profile_for(memory_->type, memory_->firmware)
+                                       : std::nullopt;
+    return told ? with_own_properties(*told, own.profile.own) : own.profile;
 }
 
 std::string Line::known_serial_number() const {
@@ -44,8 +45,9 @@ std::vector<daemon::Finding> Line::look_at_printer(const printer::ClientSettings
     hear(facts);
     learn_identity(facts.version);
     const std::string known = known_serial_number();
-    return daemon::judge(facts, {*all, *all->printer(printer_), known, purpose.may_be_printing,
-                                 purpose.records_have_escapes, printers_of_same_machine(known)});
+    return daemon::judge(facts,
+                         {*all, *all->printer(printer_), known, purpose.may_be_printing, purpose.records,
+                          printers_of_same_machine(known), keeps_stop_at()});
 }
 
 protocol::Profile Line::profile() {
@@ -119,8 +121,56 @@ std::vector<std::string> Line::printers_of_same_machine(const std::string& seria
     return *std::move(names);
 }
 
+/// What a probe has found holds for the machine and the firmware that it has found it of.
+void Line::remember(const protocol::VersionInfo& version) {
+    spool::PrinterMemory memory{version.serial_number, version.type, version.firmware, {}, 0};
+    {
+        const std::lock_guard lock{mutex_};
+        const auto is_known = [&](const spool::PrinterMemory& known) {
+            return known.serial_number == memory.serial_number && known.type == memory.type &&
+                   known.firmware == memory.firmware;
+        };
+        if (memory_ && is_known(*memory_)) {
+            return;
+        }
+        memory_ = memory;
+    }
+    write_memory(memory);
+}
+
+void Line::remember_probe(std::string_view found) {
+    spool::PrinterMemory memory;
+    {
+        const std::lock_guard lock{mutex_};
+        memory = memory_.value_or(spool::PrinterMemory{});
+        memory.probe = found;
+        memory.probed_ns = daemon::wall_clock_ns();
+        memory_ = memory;
+    }
+    write_memory(memory);
+}
+
+void Line::write_memory(const spool::PrinterMemory& memory) {
+    const auto written =
+        services_.access.write([&](spool::Spool& spool) { return spool.write_printer_memory(printer_, memory); });
+    if (!written) {
+        event(daemon::event_kind::storage_failed, {}, written.error().message);
+    }
+}
+
+/// By the last probe.
+std::optional<bool> Line::keeps_stop_at() const {
+    const std::lock_guard lock{mutex_};
+    const printer::Json found = memory_ ? printer::Json::parse(memory_->probe, nullptr, false) : printer::Json{};
+    const bool told = found.is_object() && found.contains("keeps_stop_at") && found["keeps_stop_at"].is_boolean();
+    return told ? std::optional{found["keeps_stop_at"].get<bool>()} : std::nullopt;
+}
+
 /// The first machine that answers is the one that is meant, unless another one is known already.
 void Line::learn_identity(const std::optional<protocol::VersionInfo>& version) {
+    if (version) {
+        remember(*version);
+    }
     if (!version || version->serial_number.empty()) {
         return;
     }

@@ -19,7 +19,7 @@ Result<printer::ClientSettings> Line::client_settings() const {
     }
     return printer::ClientSettings{.address = link::to_string(own->address),
                                    .endpoints = std::move(*endpoints),
-                                   .escapes = known_profile(*own).escapes,
+                                   .profile = known_profile(*own),
                                    .connect_timeout = own->connect_timeout,
                                    .reply_timeout = own->reply_timeout};
 }
@@ -81,7 +81,14 @@ Result<std::string> Line::carry_out(const printer::Task& task, std::string_view 
         const config::ErrorEntry* const entry = all->errors.find(error);
         return entry == nullptr ? printer::ErrorWords{} : printer::ErrorWords{entry->meaning, entry->advice};
     };
-    return printer::carry_out_as_text(task, **connected, {std::move(*read), meaning});
+    auto found = printer::carry_out_as_text(task, **connected, {std::move(*read), meaning});
+    if (found && task.remembered) {
+        if (const auto version = printer::ask_version(**connected)) {
+            remember(*version);
+        }
+        remember_probe(*found);
+    }
+    return found;
 }
 
 Result<void> Line::talk(bool alone, const std::function<Result<void>(printer::PrinterClient&)>& words) {

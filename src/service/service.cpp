@@ -87,15 +87,19 @@ Result<Line::Past> Service::past_of(const config::PrinterSettings& printer) {
         const auto held = spool.printer_held(printer.name);
         const auto waiting = spool.first_in_queue(printer.name);
         const auto serial_number = spool.serial_number(printer.name);
-        if (!held || !waiting || !serial_number) {
-            return !held ? held.error() : !waiting ? waiting.error() : serial_number.error();
+        const auto memory = spool.printer_memory(printer.name);
+        if (!held || !waiting || !serial_number || !memory) {
+            return !held             ? held.error()
+                   : !waiting        ? waiting.error()
+                   : !serial_number ? serial_number.error()
+                                     : memory.error();
         }
         const bool waits = printer.queue.autostart && waiting->has_value();
         if (waits && !*held) {
             event(event_kind::printer_notice, printer.name, (*waiting)->job,
                   "it waited before the service was started: nothing starts by itself until somebody starts a job");
         }
-        return Line::Past{*held || waits, *serial_number};
+        return Line::Past{*held || waits, *serial_number, *memory};
     });
 }
 
@@ -111,7 +115,7 @@ void Service::open_lines() {
         if (!past) {
             event(event_kind::storage_failed, printer.name, {}, past.error().message);
         }
-        auto opened = std::make_shared<Line>(services, printer.name, now, past ? *past : Line::Past{true, {}});
+        auto opened = std::make_shared<Line>(services, printer.name, now, past ? *past : Line::Past{.held = true});
         const std::lock_guard lock{parts_mutex_};
         lines_.emplace(printer.name, std::move(opened));
     }

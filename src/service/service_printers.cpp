@@ -61,7 +61,7 @@ Result<std::string> Service::read_file(std::string_view printer, std::string_vie
     }
     std::string bytes;
     const auto read = (*line)->talk(false, [&](printer::PrinterClient& client) -> Result<void> {
-        const auto file = printer::printer_file(path, client.settings().escapes);
+        const auto file = printer::printer_file(path, client.settings().profile.escapes);
         auto got = file ? printer::download(client, *file) : file.error();
         if (!got) {
             return got.error();
@@ -86,7 +86,7 @@ Result<void> Service::write_file(const daemon::Caller& caller, std::string_view 
             return line.error();
         }
         return (*line)->talk(file.replace, [&](printer::PrinterClient& client) -> Result<void> {
-            const auto path = printer::printer_file(file.path, client.settings().escapes);
+            const auto path = printer::printer_file(file.path, client.settings().profile.escapes);
             return path ? printer::put_file(client, *path, *bytes, file.replace) : path.error();
         });
     });

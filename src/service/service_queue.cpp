@@ -101,7 +101,7 @@ Result<void> Service::check_fits(const JobFacts& facts, const std::string& print
     }
     // Records without escapes mean the same everywhere. Of an automatic profile the printer tells at the start.
     if (daemon::record_format(facts.job).escapes != protocol::EscapeMode::backslash ||
-        own->profile.escapes != protocol::EscapeMode::none || protocol::is_automatic(own->profile)) {
+        own->profile.escapes != protocol::EscapeMode::none || (protocol::is_automatic(own->profile) && !own->profile.own.escapes)) {
         return {};
     }
     const auto escapes = access_.read([&](spool::Spool& spool) { return spool.has_escapes(facts.job.id); });
@@ -110,7 +110,7 @@ Result<void> Service::check_fits(const JobFacts& facts, const std::string& print
     }
     if (*escapes) {
         return wrong(name_of(facts.job.id) + " was imported for another firmware than that of " + printer + " (" +
-                     std::string{own->profile.name} + "): import its file again for this printer");
+                     to_string(own->profile) + "): import its file again for this printer");
     }
     return {};
 }

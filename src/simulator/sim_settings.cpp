@@ -111,9 +111,10 @@ void set_input_function(PrinterSettings& printer, const std::string& typed) {
 }
 
 void set_profile(PrinterSettings& printer, const SimOptions& typed) {
-    const auto profile = protocol::profile_by_name(typed.profile);
+    const auto profile = protocol::parse_profile(typed.profile);
     if (!profile || protocol::is_automatic(*profile)) {
-        refuse("--profile", "jet3, jet3up, jet2neo or jet2neo-v71 expected, not \"" + typed.profile + "\"");
+        refuse("--profile", profile ? "jet3, jet3up, jet2neo or jet2neo-v71 expected: it is the printer that tells"
+                                    : profile.error().message);
     }
     printer.profile = *profile;
     if (!printer.firmware.empty()) {
@@ -121,7 +122,7 @@ void set_profile(PrinterSettings& printer, const SimOptions& typed) {
         if (!of_version || printer.firmware.find_first_of("\t\r\n^\\") != std::string::npos) {
             refuse("--firmware", "a version expected, e.g. V60.0.1.17, not \"" + printer.firmware + "\"");
         }
-        printer.profile = *of_version;
+        printer.profile = with_own_properties(*of_version, profile->own);
     }
 }
 

@@ -8,6 +8,7 @@
 #include "base/record_page.hpp"
 #include "spool/job.hpp"
 #include "spool/ledger.hpp"
+#include "spool/printer_memory.hpp"
 #include "spool/ticket.hpp"
 
 #include <cstdint>
@@ -139,6 +140,10 @@ public:
     [[nodiscard]] Result<std::string> learn_serial_number(const std::string& printer, const std::string& serial_number);
     /// The names of all printers behind which that machine stands.
     [[nodiscard]] Result<std::vector<std::string>> printers_of_machine(const std::string& serial_number);
+    /// What is remembered of a printer; absent = it has not told anything yet.
+    [[nodiscard]] Result<std::optional<PrinterMemory>> printer_memory(const std::string& printer);
+    /// Durable at return.
+    [[nodiscard]] Result<void> write_printer_memory(const std::string& printer, const PrinterMemory& memory);
     /// A place before all others of the printer's queue, or behind them.
     [[nodiscard]] Result<std::int64_t> first_place(const std::string& printer);
     [[nodiscard]] Result<std::int64_t> last_place(const std::string& printer);

@@ -45,8 +45,8 @@ layouts:
       base: 4294967295, mirrored: true, orientation: 180}
   b: {query: SELECT 1}
 printers:
-  p: {address: "tcp://10.0.0.1:3002", profile: jet2neo, job_file: 'FFSDISK\JOBS\a.job', open_nozzle: true, errors: {5043: report},
-      poll_min: 400 us, poll_max: 1 s, connect_timeout: 1 s, reply_timeout: 500 ms, watch_interval: 1 min,
+  p: {address: "tcp://10.0.0.1:3002", profile: "jet2neo,escapes=off", job_file: 'FFSDISK\JOBS\a.job', open_nozzle: true, errors: {5043: report},
+      poll_min: 400 us, poll_max: 1 s, expected_rate: 30, connect_timeout: 1 s, reply_timeout: 500 ms, watch_interval: 1 min,
       queue: {autostart: true, chain: stop}}
 folders:
   f: {path: /d, layout: a, printer: p, pattern: "*.csv", autostart: true, watch: poll, settle: done-companion, poll_interval: 1 h,
@@ -95,7 +95,7 @@ TEST(SettingsFile, shouldTellAllProblemsInTheOrderOfTheFile) {
                     "tokens_file, hosts, origins, max_body, max_header, max_connections or request_timeout",
                     "f.yaml:6:6: printers.p.address: missing: this key must be there",
                     "f.yaml:6:7: printers.p.adress: unknown key; did you mean \"address\"? allowed here: address, "
-                    "profile, job_file, open_nozzle, errors, poll_min, poll_max, connect_timeout, reply_timeout, "
+                    "profile, job_file, open_nozzle, errors, poll_min, poll_max, expected_rate, connect_timeout, reply_timeout, "
                     "watch_interval or queue"));
     EXPECT_THAT(
         refusals_of("real_time: {colour: red}\n"),

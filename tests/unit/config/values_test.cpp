@@ -120,7 +120,10 @@ TEST(ChoiceText, shouldNameTheWordsAndTheNearest) {
     EXPECT_EQ(charset("utf-8"), "expected latin1, windows-1252 or unicode-hex, found \"utf-8\"");
     EXPECT_EQ(charset("[latin1]"), "expected latin1, windows-1252 or unicode-hex, found a list");
     EXPECT_EQ(refusal_of("printers", "profile", "jet3-up"),
-              "expected jet3up, jet3, jet2neo, jet2neo-v71 or auto, found \"jet3-up\"; did you mean \"jet3up\"?");
+              "there is no firmware profile \"jet3-up\"; there are: jet3up, jet3, jet2neo, jet2neo-v71, auto");
+    EXPECT_EQ(refusal_of("printers", "profile", "\"jet3,escapes=yes\""), "escapes is on or off, not \"yes\"");
+    EXPECT_EQ(refusal_of("printers", "profile", "[jet3]"), "expected a firmware profile, found a list");
+    EXPECT_EQ(refusal_of("printers", "profile", "\"jet3,escapes=on\""), "");
     EXPECT_EQ(refusal_of("layouts", "orientation", "45"), "expected 0, 90, 180 or 270, found \"45\"");
     EXPECT_EQ(refusal_of("layouts", "orientation", "270"), "");
 }

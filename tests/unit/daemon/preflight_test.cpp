@@ -36,8 +36,7 @@ PreflightFacts healthy() {
 class PreflightTest : public testing::Test {
 protected:
     [[nodiscard]] std::vector<Finding> findings() const {
-        return judge(facts_,
-                     {settings_, printer_, known_serial_, may_be_printing_, records_have_escapes_, same_machine_});
+        return judge(facts_, {settings_, printer_, known_serial_, may_be_printing_, records_, same_machine_, keeps_stop_at_});
     }
     /// That of this check; one line: severity, words and advice.
     [[nodiscard]] std::string finding(std::string_view check) const {
@@ -64,8 +63,9 @@ protected:
     config::PrinterSettings printer_;
     std::string known_serial_;
     bool may_be_printing_ = false;
-    std::function<bool()> records_have_escapes_;
+    RecordFacts records_;
     std::vector<std::string> same_machine_;
+    std::optional<bool> keeps_stop_at_;
 };
 
 TEST_F(PreflightTest, shouldFindNothingAmissWithAHealthyPrinter) {
@@ -137,7 +137,7 @@ TEST_F(PreflightTest, shouldSayWhichProfileAnAutomaticOneIs) {
 
 TEST_F(PreflightTest, shouldStartNoRecordsWithEscapesWhereThePrinterKnowsNone) {
     printer_.profile = *protocol::profile_by_name("auto");
-    records_have_escapes_ = [] { return true; };
+    records_.have_escapes = [] { return true; };
     EXPECT_EQ(finding("profile"), "ok: auto: jet3up, since it is a JET3up, firmware V62.0.9.0");
     facts_.version->type = "JET3";
     EXPECT_EQ(finding("profile"), "problem: auto: jet3, which knows no escapes; the job was imported for firmware that "
@@ -147,7 +147,7 @@ TEST_F(PreflightTest, shouldStartNoRecordsWithEscapesWhereThePrinterKnowsNone) {
     EXPECT_THAT(finding("profile"), HasSubstr("name its profile in the settings (jet3up, "));
     facts_.version.reset();
     EXPECT_THAT(finding("profile"), HasSubstr("problem: auto, but the printer does not say"));
-    records_have_escapes_ = [] { return false; };
+    records_.have_escapes = [] { return false; };
     EXPECT_THAT(finding("profile"), HasSubstr("warning: auto, but the printer does not say"));
     facts_.version.emplace().type = "JET3";
     facts_.version->firmware = "V62.0.9.0";
@@ -169,6 +169,53 @@ TEST_F(PreflightTest, shouldNoticeAProfileWithOtherEscapes) {
                           "jet3, and its profile is jet3up"));
     printer_.profile = *protocol::profile_by_name("jet3");
     EXPECT_EQ(finding("profile"), "ok: jet3 fits JET3");
+}
+
+TEST_F(PreflightTest, shouldTakeTheOwnersWordOnEscapes) {
+    printer_.profile = protocol::parse_profile("jet3,escapes=on").value();
+    facts_.version->type = "JET3";
+    facts_.version->firmware = "V60.0.25.0";
+    EXPECT_EQ(finding("profile"), "ok: jet3,escapes=on fits JET3");
+    printer_.profile = protocol::parse_profile("auto,escapes=on").value();
+    records_.have_escapes = [] { return true; };
+    EXPECT_THAT(finding("profile"), HasSubstr("ok: auto: jet3,escapes=on, since it is a JET3"));
+    printer_.profile = protocol::parse_profile("auto,escapes=off").value();
+    facts_.version->type = "JET3up";
+    EXPECT_THAT(finding("profile"), HasSubstr("problem: auto: jet3up,escapes=off, which knows no escapes"));
+}
+
+TEST_F(PreflightTest, shouldStartNoRecordsWithPropertiesWhereThePrinterKnowsNone) {
+    records_.have_properties = true;
+    EXPECT_THAT(finding("profile"), HasSubstr("ok: "));
+    printer_.profile = protocol::parse_profile("jet3up,record-properties=off").value();
+    EXPECT_THAT(finding("profile"), HasSubstr("problem: jet3up,record-properties=off, which knows no properties"));
+    printer_.profile = protocol::parse_profile("auto").value();
+    facts_.version->firmware = "V60.0.1.21";
+    EXPECT_THAT(finding("profile"), HasSubstr("which knows no properties of records"));
+    records_.have_properties = false;
+    EXPECT_THAT(finding("profile"), HasSubstr("ok: "));
+}
+
+TEST_F(PreflightTest, shouldWarnWhereASerialLineCarriesLessThanTheConveyorBrings) {
+    printer_.address = link::parse_printer_address("serial:///dev/ttyUSB0?baud=9600").value();
+    EXPECT_THAT(finding("line"), HasSubstr("ok: the serial line carries about 19 records a second"));
+    printer_.expected_rate = 19;
+    EXPECT_THAT(finding("line"), HasSubstr("ok: "));
+    printer_.expected_rate = 20;
+    EXPECT_THAT(finding("line"), HasSubstr("warning: the conveyor is to bring 20 products a second, and the serial line "
+                                           "carries about 19"));
+    EXPECT_THAT(finding("line"), HasSubstr(" - Slow the conveyor down"));
+    records_.bytes = 20;
+    EXPECT_THAT(finding("line"), HasSubstr("ok: ")) << "by the records of the job";
+    printer_.address = link::parse_printer_address("tcp://printer").value();
+    EXPECT_EQ(finding("line"), "none");
+}
+
+TEST_F(PreflightTest, shouldRememberAFirmwareWithoutStopPoint) {
+    keeps_stop_at_ = true;
+    EXPECT_THAT(finding("stop_point"), HasSubstr("ok: "));
+    keeps_stop_at_ = false;
+    EXPECT_THAT(finding("stop_point"), HasSubstr("warning: by the last probe its firmware does not keep a stop point"));
 }
 
 TEST_F(PreflightTest, shouldHaveWordsForEveryState) {

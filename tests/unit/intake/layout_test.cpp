@@ -42,6 +42,17 @@ TEST_F(LayoutTest, shouldHaveOneCanonicalForm) {
         R"("query":"SELECT 'ä'","delimiter":"\t","header":false,"skip_bad":true,"mirrored":true,"orientation":1})");
 }
 
+TEST_F(LayoutTest, shouldTurnNoRecordsForAFirmwareThatCannot) {
+    write("a.csv", "serial\n1\n");
+    Layout layout;
+    layout.profile = protocol::parse_profile("jet3up,record-properties=off").value();
+    EXPECT_TRUE(open_with_layout(directory / "a.csv", layout));
+    layout.properties.mirrored = true;
+    EXPECT_THAT(open_with_layout(directory / "a.csv", layout).error().message,
+                HasSubstr("(jet3up,record-properties=off) turns or mirrors no single record"));
+    EXPECT_THAT(canonical_json(layout), HasSubstr(R"("profile":"jet3up,record-properties=off")"));
+}
+
 TEST_F(LayoutTest, shouldKnowTheSameWayWhateverTheProfile) {
     Layout layout;
     layout.columns = {"\"profile\":\"x"};

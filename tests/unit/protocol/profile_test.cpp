@@ -1,6 +1,7 @@
 // What differs between firmwares.
 #include "protocol/profile.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 namespace linefeed::protocol {
@@ -33,8 +34,8 @@ TEST(Profile, shouldKnowWhatTheFamiliesHave) {
     EXPECT_EQ(jet2neo.outputs(), 4U);
     EXPECT_EQ(jet3up.job_select_inputs(), 10U);
     EXPECT_EQ(jet2neo.job_select_inputs(), 8U);
-    EXPECT_EQ(jet3.graphic_height(), 32U);
-    EXPECT_EQ(jet2neo.graphic_height(), 24U);
+    EXPECT_EQ(jet3.graphic_height, 32U);
+    EXPECT_EQ(jet2neo.graphic_height, 24U);
     EXPECT_TRUE(jet3.has_sd_card());
     EXPECT_FALSE(jet3up.has_sd_card() || jet2neo.has_sd_card());
     EXPECT_EQ(jet3up.usb_root(), "USB-Stick\\LJ3");
@@ -46,6 +47,53 @@ TEST(Profile, shouldRiskNothingBeforeThePrinterHasTold) {
     EXPECT_TRUE(is_automatic(automatic));
     EXPECT_EQ(automatic.escapes, EscapeMode::none) << "what needs escapes is refused";
     EXPECT_FALSE(is_automatic(profile_by_name("jet3").value()));
+}
+
+TEST(Profile, shouldBeWhatItsOwnerSaysOfIt) {
+    const Profile profile = parse_profile("jet3,escapes=on,speed=m/min,record-properties=off,output-control=off,"
+                                          "counter-limits=on,graphic-height=16")
+                                .value();
+    EXPECT_EQ(profile.name, "jet3");
+    EXPECT_EQ(profile.escapes, EscapeMode::backslash);
+    EXPECT_TRUE(profile.speed_in_metres);
+    EXPECT_FALSE(profile.record_properties);
+    EXPECT_FALSE(profile.output_control);
+    EXPECT_TRUE(profile.counter_parameters);
+    EXPECT_EQ(profile.graphic_height, 16U);
+    EXPECT_TRUE(profile.has_sd_card()) << "the rest is as the name says";
+    EXPECT_EQ(to_string(profile), "jet3,escapes=on,speed=m/min,record-properties=off,output-control=off,"
+                                  "counter-limits=on,graphic-height=16");
+}
+
+TEST(Profile, shouldBeWrittenAsItIsRead) {
+    for (const std::string_view text : {"jet3up", "auto", "auto,escapes=off", "jet2neo,speed=dm/min,graphic-height=1",
+                                        "jet2neo-v71,record-properties=on,counter-limits=off"}) {
+        EXPECT_EQ(to_string(parse_profile(text).value()), text);
+    }
+    EXPECT_EQ(to_string(parse_profile("jet3,output-control=on,escapes=on").value()), "jet3,escapes=on,output-control=on");
+}
+
+TEST(Profile, shouldSayWhatIsWrongWithIt) {
+    const auto problem = [](std::string_view text) { return parse_profile(text).error().message; };
+    EXPECT_EQ(problem("jet4"), "there is no firmware profile \"jet4\"; there are: jet3up, jet3, jet2neo, jet2neo-v71, auto");
+    EXPECT_EQ(problem("jet3,echo=on"), "\"echo\" is no property of a firmware profile; there are: escapes, speed, "
+                                       "record-properties, output-control, counter-limits, graphic-height");
+    EXPECT_THAT(problem("jet3,"), testing::StartsWith("\"\" is no property"));
+    EXPECT_EQ(problem("jet3,escapes=1"), "escapes is on or off, not \"1\"");
+    EXPECT_EQ(problem("jet3,speed"), "speed is dm/min or m/min, not \"\"");
+    EXPECT_EQ(problem("jet3,graphic-height=33"), "graphic-height is 1 to 32, not \"33\"");
+    EXPECT_EQ(problem("jet3,graphic-height=0"), "graphic-height is 1 to 32, not \"0\"");
+    EXPECT_EQ(problem("jet3,escapes=on,escapes=on"), "escapes is set twice");
+    EXPECT_EQ(parse_profile("jet4").error().kind, FailureKind::usage);
+}
+
+TEST(Profile, shouldKeepItsOwnersWordWhateverThePrinterTells) {
+    const Profile told = with_own_properties(profile_for("JET3", "V60.0.1.17").value(),
+                                             parse_profile("auto,escapes=on,speed=dm/min").value().own);
+    EXPECT_EQ(to_string(told), "jet3,escapes=on,speed=dm/min");
+    EXPECT_EQ(told.escapes, EscapeMode::backslash);
+    EXPECT_FALSE(told.speed_in_metres);
+    EXPECT_FALSE(told.record_properties) << "as the version says";
 }
 
 Profile of(std::string_view type, std::string_view firmware) {

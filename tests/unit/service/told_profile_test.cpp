@@ -102,6 +102,48 @@ TEST_F(ToldProfileTest, shouldNotStartRecordsWithEscapesWhereThePrinterDoesNotTe
     EXPECT_THAT(silent.heard(), testing::Not(HasSubstr("^0!")));
 }
 
+TEST_F(ToldProfileTest, shouldRememberWhatASwitchedOffPrinterHasTold) {
+    std::optional<SimulatedPrinter> printer{std::in_place, directory_ / "tape.csv", 1000, "0", machine("jet3up")};
+    const std::string text = settings(*printer);
+    open(text);
+    static_cast<void>(import(20)); // for which it is asked
+    service_.reset();
+    printer.reset();
+    open(text);
+    EXPECT_NE(import_special(), spool::JobId{}) << "JET3up knows escapes";
+    EXPECT_EQ(service_->printer("line1")->firmware, "") << "it was not heard of since";
+}
+
+TEST_F(ToldProfileTest, shouldRememberAProbeOfThisMachineWithThisFirmware) {
+    auto ignores = machine("jet3up");
+    ASSERT_TRUE(simulator::set_habit(ignores.printer.habits, "ignore-stop-at"));
+    std::optional<SimulatedPrinter> printer{std::in_place, directory_ / "tape.csv", 1000, "0", ignores};
+    const std::string port = printer->port();
+    const std::string text = settings(*printer);
+    open(text);
+    EXPECT_EQ(service_->printer("line1")->probe, "");
+    ASSERT_TRUE(service_->command(anna, "line1", "probe", "{}"));
+    service_.reset();
+    open(text);
+    const auto view = service_->printer("line1");
+    EXPECT_THAT(view->probe, HasSubstr("\"keeps_stop_at\":false"));
+    EXPECT_GT(view->probed_ns, 0);
+    const auto finds = [this](std::string_view words) {
+        const auto findings = service_->preflight("line1");
+        return findings && std::ranges::any_of(*findings, [&](const daemon::Finding& finding) {
+                   return finding.words.find(words) != std::string::npos;
+               });
+    };
+    EXPECT_TRUE(finds("does not keep a stop point"));
+    printer.reset();
+    auto newer = machine("jet3up");
+    newer.printer.firmware = "V63.0.0.1";
+    printer.emplace(directory_ / "tape2.csv", 1000, port, newer);
+    EXPECT_TRUE(finds("firmware V63.0.0.1"));
+    EXPECT_EQ(service_->printer("line1")->probe, "") << "that was another firmware";
+    EXPECT_FALSE(finds("does not keep a stop point"));
+}
+
 /// A printer that serves one connection at a time would lose the job.
 TEST_F(ToldProfileTest, shouldNotAskAPrinterThatAJobIsOn) {
     printer::Peer silent{[](std::string_view) { return printer::Peer::Reaction{}; }};

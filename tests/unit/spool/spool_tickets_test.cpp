@@ -84,30 +84,6 @@ TEST_F(SpoolTicketsTest, shouldListWhatWasBegun) {
     EXPECT_THAT(jobs_of(spool.begun_jobs()), ElementsAre(b));
 }
 
-TEST_F(SpoolTicketsTest, shouldKeepWhichMachineStandsBehindTheNameOfAPrinter) {
-    {
-        Spool spool = open();
-        EXPECT_EQ(spool.serial_number("line1").value(), "");
-        ASSERT_TRUE(spool.write_serial_number("line1", "104711"));
-        ASSERT_TRUE(spool.write_serial_number("line2", "7"));
-        ASSERT_TRUE(spool.write_serial_number("line1", "104712"));
-    }
-    Spool spool = open();
-    EXPECT_EQ(spool.serial_number("line1").value(), "104712");
-    EXPECT_EQ(spool.serial_number("line2").value(), "7");
-}
-
-TEST_F(SpoolTicketsTest, shouldLearnWhichMachineAPrinterIsOnlyOnce) {
-    Spool spool = open();
-    EXPECT_EQ(spool.learn_serial_number("line1", "104711").value(), "104711");
-    EXPECT_EQ(spool.learn_serial_number("line1", "7").value(), "104711") << "that takes an operator";
-    EXPECT_EQ(spool.serial_number("line1").value(), "104711");
-    EXPECT_EQ(spool.learn_serial_number("line0", "104711").value(), "104711");
-    ASSERT_TRUE(spool.write_serial_number("line2", "7"));
-    EXPECT_THAT(spool.printers_of_machine("104711").value(), testing::ElementsAre("line0", "line1"));
-    EXPECT_TRUE(spool.printers_of_machine("8").value().empty());
-}
-
 TEST_F(SpoolTicketsTest, shouldFindJobsByTheirFirstRecord) {
     Spool spool = open();
     const JobId a = make_job(spool, 10).id;
