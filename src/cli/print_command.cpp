@@ -66,8 +66,7 @@ Result<ExitCode> PrintCommand::run(const std::filesystem::path& spool_path, cons
         view_.message(words);
     }
     if (options_.expected_rate) {
-        const std::string words =
-            daemon::shortfall_words(printer, daemon::record_bytes(job_), *options_.expected_rate);
+        const std::string words = daemon::shortfall_words(printer, daemon::record_bytes(job_), *options_.expected_rate);
         if (!words.empty()) {
             view_.message("warning: " + words);
         }

@@ -46,8 +46,8 @@ std::string line_words(const link::PrinterAddress& printer, std::size_t record_b
     if (serial == nullptr) {
         return {};
     }
-    return "the serial line carries " + rate_text(carried_per_second(printer, record_bytes)) + " records a second (" + std::to_string(serial->baud) +
-           " baud, records of " + std::to_string(record_bytes) + " bytes, " +
+    return "the serial line carries " + rate_text(carried_per_second(printer, record_bytes)) + " records a second (" +
+           std::to_string(serial->baud) + " baud, records of " + std::to_string(record_bytes) + " bytes, " +
            (printer.crc ? "secured by CRC32" : "not secured") + "): at more the printer runs dry and stops" +
            (printer.crc ? ""
                         : ". Without crc=on in the address nobody notices a letter that the line has changed on its "

@@ -51,7 +51,8 @@ Finding reachable(const PreflightFacts& facts) {
 
 Finding properties_unknown(const protocol::Profile& profile) {
     return problem("profile",
-                   to_string(profile) + ", which knows no properties of records; those of the job are mirrored or turned",
+                   to_string(profile) +
+                       ", which knows no properties of records; those of the job are mirrored or turned",
                    "Mirror or turn the objects of the printer's job instead, and import the file again without that.");
 }
 
@@ -64,10 +65,10 @@ Finding told_profile(const protocol::VersionInfo& version, const PreflightRules&
     if (!valid.record_properties && rules.records.have_properties) {
         return properties_unknown(valid);
     }
-    if (valid.escapes != protocol::EscapeMode::backslash && rules.records.have_escapes && rules.records.have_escapes()) {
+    if (valid.escapes != protocol::EscapeMode::backslash && rules.records.have_escapes &&
+        rules.records.have_escapes()) {
         return told ? problem(check,
-                              "auto: " + to_string(valid) +
-                                  ", which knows no escapes; the job was imported for " +
+                              "auto: " + to_string(valid) + ", which knows no escapes; the job was imported for " +
                                   "firmware that does, and ^ and \\ would come out wrong",
                               "Import its file again for this printer.")
                     : problem(check,
@@ -76,8 +77,8 @@ Finding told_profile(const protocol::VersionInfo& version, const PreflightRules&
                               "Look up the printer's firmware, name its profile in the settings (jet3up, jet3, jet2neo "
                               "or jet2neo-v71), and start again.");
     }
-    return told ? ok(check, "auto: " + to_string(valid) + ", since it is a " + version.type + ", firmware " +
-                                version.firmware)
+    return told ? ok(check,
+                     "auto: " + to_string(valid) + ", since it is a " + version.type + ", firmware " + version.firmware)
                 : warning(check, "auto, but the printer does not say a type and a firmware that are known",
                           "Name its profile in the settings: until then records with ^ or \\ are refused.");
 }
@@ -97,7 +98,8 @@ Finding profile(const protocol::VersionInfo& version, const PreflightRules& rule
     if (version.type.empty()) {
         return ok(check, chosen + ", as configured; the printer does not say its type");
     }
-    if (told && says_neo == chosen_neo && with_own_properties(*told, rules.printer.profile.own).escapes != rules.printer.profile.escapes) {
+    if (told && says_neo == chosen_neo &&
+        with_own_properties(*told, rules.printer.profile.own).escapes != rules.printer.profile.escapes) {
         return warning(
             check,
             "the printer says that it is a " + version.type + ", firmware " + version.firmware + ": that is " +
@@ -105,8 +107,7 @@ Finding profile(const protocol::VersionInfo& version, const PreflightRules& rule
             "Set the printer's profile to what it is, or to auto: with a wrong one, ^ and \\ come out wrong.");
     }
     if (says_neo != chosen_neo) {
-        return warning(check,
-                       "the printer says that it is a " + version.type + ", and its profile is " + chosen,
+        return warning(check, "the printer says that it is a " + version.type + ", and its profile is " + chosen,
                        "Set the printer's profile to what it is: with a wrong one, ^ and \\ may come out wrong.");
     }
     return ok(check, chosen + " fits " + version.type);

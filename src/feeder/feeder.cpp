@@ -36,7 +36,7 @@ void Feeder::on_machine_status(const protocol::MachineStatus& status, Instant no
         return;
     case Phase::halting:
         if (status_.machine == MachineState::printing) {
-            ask_later(Parameter::RS, now);
+            stop_again(now, out);
             return;
         }
         enter(Phase::locating, now, settings_.finish_timeout);
@@ -64,7 +64,7 @@ void Feeder::on_machine_status(const protocol::MachineStatus& status, Instant no
         return;
     case Phase::stopping:
         if (status_.machine == MachineState::printing) {
-            ask_later(Parameter::RS, now);
+            stop_again(now, out);
             return;
         }
         begin_judging(now, out);

@@ -46,7 +46,8 @@ struct FeederSettings {
     Duration verify_timeout = std::chrono::seconds{5};
     Duration start_timeout = std::chrono::seconds{15};
     Duration stop_timeout = std::chrono::seconds{10};
-    Duration finish_timeout = std::chrono::seconds{2}; ///< for the print in progress, and for `!EQ` to be seen
+    Duration stop_repeat = std::chrono::milliseconds{500}; ///< `!ST` again while it prints on: one may be lost
+    Duration finish_timeout = std::chrono::seconds{2};     ///< for the print in progress, and for `!EQ` to be seen
     Duration nozzle_timeout = std::chrono::seconds{120};
     /// Records of the first fill, and of one refill, at most: what a slow line carries in a moment.
     RecordCount fill_at_most = RecordCount{UINT32_MAX};
@@ -249,6 +250,7 @@ private:
     // feeder_stopping.cpp: from the last print or an interruption to the end
     void begin_stop(OutcomeCode cause, Instant now, Actions& out);
     void send_stop(Instant now, Actions& out);
+    void stop_again(Instant now, Actions& out);
     void begin_judging(Instant now, Actions& out);
     void judge_status(Instant now, Actions& out);
     [[nodiscard]] OutcomeCode cause_of_stop() const;
@@ -307,6 +309,7 @@ private:
     Instant mail_due_{};   ///< next `?SM` while printing
     Instant status_due_{}; ///< next `?RS` while printing
     std::optional<Instant> go_due_;
+    Instant stop_sent_at_{};
 
     bool taking_over_ = false;
     std::optional<std::uint64_t> in_printer_through_; ///< by the last `=SM`: printed + entries + 1

@@ -93,8 +93,18 @@ void Feeder::begin_stop(OutcomeCode cause, Instant now, Actions& out) {
 
 void Feeder::send_stop(Instant now, Actions& out) {
     out.push_back(Command{protocol::Action::stop_print});
+    stop_sent_at_ = now;
     enter(Phase::stopping, now, settings_.stop_timeout);
     ask(Parameter::RS, now, out);
+}
+
+/// It prints on.
+void Feeder::stop_again(Instant now, Actions& out) {
+    if (now - stop_sent_at_ >= settings_.stop_repeat) {
+        out.push_back(Command{protocol::Action::stop_print});
+        stop_sent_at_ = now;
+    }
+    ask_later(Parameter::RS, now);
 }
 
 void Feeder::begin_judging(Instant now, Actions& out) {

@@ -121,6 +121,7 @@ void Feeder::taken_over(RecordRange range, RecordNumber durable_through, Instant
 void Feeder::halt(Instant now, Actions& out) {
     out.push_back(Notice{NoticeCode::found_printing, {}});
     out.push_back(Command{protocol::Action::stop_print});
+    stop_sent_at_ = now;
     enter(Phase::halting, now, settings_.stop_timeout);
     ask(Parameter::RS, now, out);
 }

@@ -6,9 +6,7 @@
 
 namespace linefeed {
 
-namespace {
-
-} // namespace
+namespace {} // namespace
 
 cli::ExitCode usage_error(const std::string& problem) {
     std::cerr << "linefeed: " << problem << '\n';
@@ -80,7 +78,8 @@ void add_layout(CLI::App& command, intake::Layout& layout, RawLayout& raw) {
         ->allow_extra_args(false)
         ->delimiter(',');
     command.add_option("--graphics-folder", raw.graphics_folder, "Where these images are; default: where the file is");
-    command.add_option("--profile", raw.profile, "Firmware profile: " + protocol::profile_names())->capture_default_str();
+    command.add_option("--profile", raw.profile, "Firmware profile: " + protocol::profile_names())
+        ->capture_default_str();
     command.add_option("--base", layout.base, "Record k has number BASE + k")->capture_default_str();
     command.add_flag("--mirrored", layout.properties.mirrored, "Print every record mirrored");
     command.add_option("--orientation", raw.orientation, "Turn every record by 0, 90, 180 or 270 degrees")

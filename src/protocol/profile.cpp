@@ -129,7 +129,8 @@ Result<void> read_property(std::string_view text, OwnProperties& own) {
         return wrong(std::string{name} + " is set twice");
     }
     if (!property->set(own, value)) {
-        return wrong(std::string{name} + " is " + std::string{property->values} + ", not \"" + std::string{value} + '"');
+        return wrong(std::string{name} + " is " + std::string{property->values} + ", not \"" + std::string{value} +
+                     '"');
     }
     return {};
 }

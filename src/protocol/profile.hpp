@@ -16,7 +16,8 @@ namespace linefeed::protocol {
 /// The printer families of the manual.
 enum class PrinterFamily : std::uint8_t { jet3, jet3up, jet2neo };
 
-/// What is so of a printer by its owner's word, whatever its type and version say (parse_profile()). Absent: as they say.
+/// What is so of a printer by its owner's word, whatever its type and version say (parse_profile()). Absent: as they
+/// say.
 struct OwnProperties {
     std::optional<bool> escapes{};
     std::optional<bool> speed_in_metres{};

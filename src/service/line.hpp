@@ -58,7 +58,7 @@ class Line {
 public:
     /// What is remembered of the printer.
     struct Past {
-        bool held = false;         ///< as by hold(), or a job has waited there before the service was started
+        bool held = false;           ///< as by hold(), or a job has waited there before the service was started
         std::string serial_number{}; ///< of the machine; empty = not known yet
         std::optional<spool::PrinterMemory> memory{};
     };

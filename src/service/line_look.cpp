@@ -45,9 +45,8 @@ std::vector<daemon::Finding> Line::look_at_printer(const printer::ClientSettings
     hear(facts);
     learn_identity(facts.version);
     const std::string known = known_serial_number();
-    return daemon::judge(facts,
-                         {*all, *all->printer(printer_), known, purpose.may_be_printing, purpose.records,
-                          printers_of_same_machine(known), keeps_stop_at()});
+    return daemon::judge(facts, {*all, *all->printer(printer_), known, purpose.may_be_printing, purpose.records,
+                                 printers_of_same_machine(known), keeps_stop_at()});
 }
 
 protocol::Profile Line::profile() {

@@ -89,10 +89,10 @@ Result<Line::Past> Service::past_of(const config::PrinterSettings& printer) {
         const auto serial_number = spool.serial_number(printer.name);
         const auto memory = spool.printer_memory(printer.name);
         if (!held || !waiting || !serial_number || !memory) {
-            return !held             ? held.error()
-                   : !waiting        ? waiting.error()
+            return !held            ? held.error()
+                   : !waiting       ? waiting.error()
                    : !serial_number ? serial_number.error()
-                                     : memory.error();
+                                    : memory.error();
         }
         const bool waits = printer.queue.autostart && waiting->has_value();
         if (waits && !*held) {

@@ -101,7 +101,8 @@ Result<void> Service::check_fits(const JobFacts& facts, const std::string& print
     }
     // Records without escapes mean the same everywhere. Of an automatic profile the printer tells at the start.
     if (daemon::record_format(facts.job).escapes != protocol::EscapeMode::backslash ||
-        own->profile.escapes != protocol::EscapeMode::none || (protocol::is_automatic(own->profile) && !own->profile.own.escapes)) {
+        own->profile.escapes != protocol::EscapeMode::none ||
+        (protocol::is_automatic(own->profile) && !own->profile.own.escapes)) {
         return {};
     }
     const auto escapes = access_.read([&](spool::Spool& spool) { return spool.has_escapes(facts.job.id); });

@@ -117,6 +117,7 @@ SecuredLine::Step SecuredLine::on_refused() {
     if (state_ == State::idle) {
         return Step::wait;
     }
+    echoed_ = false; // it has come, but not as it was sent
     if (++tries_ < max_tries) {
         return Step::send;
     }

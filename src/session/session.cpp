@@ -33,7 +33,7 @@ void Session::on_received(std::string_view bytes, Instant now, Effects& out) {
         }
         Actions actions;
         if (const auto* error = std::get_if<protocol::FrameError>(&result)) {
-            take_damage(error->bytes, now, actions);
+            take_damage(error->bytes, now);
         } else {
             take_frame(std::get<protocol::Frame>(result), now, actions);
         }
@@ -62,17 +62,10 @@ bool may_be_answer(const protocol::Frame& frame) {
 
 } // namespace
 
-namespace {
-constexpr std::uint64_t length_bytes = 5; ///< of `!LN`
-} // namespace
-
-void Session::take_damage(std::uint64_t bytes, Instant now, Actions& actions) {
+void Session::take_damage(std::uint64_t bytes, Instant now) {
     statistics_.bytes_damaged += bytes;
     if (observer_ != nullptr) {
         observer_->on_damage_received(bytes, now);
-    }
-    if (settings_.line.crc && (bytes == damaged_ok_bytes || bytes == damaged_ok_bytes + length_bytes)) {
-        settle_frame(secured_.on_right(), now, actions);
     }
 }
 

@@ -108,10 +108,8 @@ private:
         Instant deadline{};
     };
     static constexpr std::size_t max_inquiries = 64;
-    /// `^0!OK`, when damage has left no frame of it.
-    static constexpr std::size_t damaged_ok_bytes = 5;
 
-    void take_damage(std::uint64_t bytes, Instant now, feeder::Actions& actions);
+    void take_damage(std::uint64_t bytes, Instant now);
     void take_frame(const protocol::Frame& frame, Instant now, feeder::Actions& actions);
     void take_unsecured(const protocol::Frame& frame, Instant now, feeder::Actions& actions);
     // session_secured.cpp: with CRC32

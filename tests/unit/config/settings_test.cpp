@@ -95,7 +95,8 @@ TEST(SettingsFile, shouldTellAllProblemsInTheOrderOfTheFile) {
                     "tokens_file, hosts, origins, max_body, max_header, max_connections or request_timeout",
                     "f.yaml:6:6: printers.p.address: missing: this key must be there",
                     "f.yaml:6:7: printers.p.adress: unknown key; did you mean \"address\"? allowed here: address, "
-                    "profile, job_file, open_nozzle, errors, poll_min, poll_max, expected_rate, connect_timeout, reply_timeout, "
+                    "profile, job_file, open_nozzle, errors, poll_min, poll_max, expected_rate, connect_timeout, "
+                    "reply_timeout, "
                     "watch_interval or queue"));
     EXPECT_THAT(
         refusals_of("real_time: {colour: red}\n"),

@@ -54,8 +54,10 @@ TEST(LineUse, shouldSayWhatASerialLineCarries) {
 TEST(LineUse, shouldSayWhereASerialLineCarriesTooLittle) {
     const auto slow = address("serial:///dev/ttyUSB0?baud=9600");
     EXPECT_EQ(shortfall_words(slow, 40, 19), "");
-    EXPECT_THAT(shortfall_words(slow, 40, 20), HasSubstr("to bring 20 products a second, and the serial line carries about 19:"));
-    EXPECT_THAT(shortfall_words(address("serial:///dev/ttyUSB0?baud=1200"), 2000, 1), HasSubstr("carries less than 1:"));
+    EXPECT_THAT(shortfall_words(slow, 40, 20),
+                HasSubstr("to bring 20 products a second, and the serial line carries about 19:"));
+    EXPECT_THAT(shortfall_words(address("serial:///dev/ttyUSB0?baud=1200"), 2000, 1),
+                HasSubstr("carries less than 1:"));
     EXPECT_EQ(shortfall_words(address("tcp://printer"), 40, 10'000), "");
 }
 

@@ -36,7 +36,8 @@ PreflightFacts healthy() {
 class PreflightTest : public testing::Test {
 protected:
     [[nodiscard]] std::vector<Finding> findings() const {
-        return judge(facts_, {settings_, printer_, known_serial_, may_be_printing_, records_, same_machine_, keeps_stop_at_});
+        return judge(facts_,
+                     {settings_, printer_, known_serial_, may_be_printing_, records_, same_machine_, keeps_stop_at_});
     }
     /// That of this check; one line: severity, words and advice.
     [[nodiscard]] std::string finding(std::string_view check) const {
@@ -202,8 +203,9 @@ TEST_F(PreflightTest, shouldWarnWhereASerialLineCarriesLessThanTheConveyorBrings
     printer_.expected_rate = 19;
     EXPECT_THAT(finding("line"), HasSubstr("ok: "));
     printer_.expected_rate = 20;
-    EXPECT_THAT(finding("line"), HasSubstr("warning: the conveyor is to bring 20 products a second, and the serial line "
-                                           "carries about 19"));
+    EXPECT_THAT(finding("line"),
+                HasSubstr("warning: the conveyor is to bring 20 products a second, and the serial line "
+                          "carries about 19"));
     EXPECT_THAT(finding("line"), HasSubstr(" - Slow the conveyor down"));
     records_.bytes = 20;
     EXPECT_THAT(finding("line"), HasSubstr("ok: ")) << "by the records of the job";

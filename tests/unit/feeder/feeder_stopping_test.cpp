@@ -42,6 +42,29 @@ TEST(FeederStopping, shouldFindTheTruthAfterAStopOnRequest) {
                  ended(OutcomeCode::stop_requested));
 }
 
+TEST(FeederStopping, shouldRepeatAStopThatGotLost) {
+    Story story = reach(Phase::printing);
+    story.sm(1, 102, 110);
+    story.take();
+    story.stop();
+    story.expect("!ST; ?RS");
+    story.wait(milliseconds{490});
+    story.rs(State::printing);
+    story.take();
+    story.wait(milliseconds{20});
+    story.take();
+    story.rs(State::printing);
+    story.expect("!ST");
+    story.wait(milliseconds{20});
+    story.take();
+    story.rs(State::printing);
+    story.expect("");
+    story.wait(milliseconds{500});
+    story.take();
+    story.rs(State::printing);
+    story.expect("!ST");
+}
+
 TEST(FeederStopping, shouldStopBeforeAnUnprovenRecord) {
     Story story = reach(Phase::printing);
     story.sm(1, 102, 110);

@@ -43,12 +43,12 @@ TEST_F(LayoutTest, shouldHaveOneCanonicalForm) {
 }
 
 TEST_F(LayoutTest, shouldTurnNoRecordsForAFirmwareThatCannot) {
-    write("a.csv", "serial\n1\n");
+    const auto file = write("serial\n1\n");
     Layout layout;
     layout.profile = protocol::parse_profile("jet3up,record-properties=off").value();
-    EXPECT_TRUE(open_with_layout(directory / "a.csv", layout));
+    EXPECT_TRUE(open_with_layout(file, layout));
     layout.properties.mirrored = true;
-    EXPECT_THAT(open_with_layout(directory / "a.csv", layout).error().message,
+    EXPECT_THAT(open_with_layout(file, layout).error().message,
                 HasSubstr("(jet3up,record-properties=off) turns or mirrors no single record"));
     EXPECT_THAT(canonical_json(layout), HasSubstr(R"("profile":"jet3up,record-properties=off")"));
 }

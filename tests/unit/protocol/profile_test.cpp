@@ -70,12 +70,14 @@ TEST(Profile, shouldBeWrittenAsItIsRead) {
                                         "jet2neo-v71,record-properties=on,counter-limits=off"}) {
         EXPECT_EQ(to_string(parse_profile(text).value()), text);
     }
-    EXPECT_EQ(to_string(parse_profile("jet3,output-control=on,escapes=on").value()), "jet3,escapes=on,output-control=on");
+    EXPECT_EQ(to_string(parse_profile("jet3,output-control=on,escapes=on").value()),
+              "jet3,escapes=on,output-control=on");
 }
 
 TEST(Profile, shouldSayWhatIsWrongWithIt) {
     const auto problem = [](std::string_view text) { return parse_profile(text).error().message; };
-    EXPECT_EQ(problem("jet4"), "there is no firmware profile \"jet4\"; there are: jet3up, jet3, jet2neo, jet2neo-v71, auto");
+    EXPECT_EQ(problem("jet4"),
+              "there is no firmware profile \"jet4\"; there are: jet3up, jet3, jet2neo, jet2neo-v71, auto");
     EXPECT_EQ(problem("jet3,echo=on"), "\"echo\" is no property of a firmware profile; there are: escapes, speed, "
                                        "record-properties, output-control, counter-limits, graphic-height");
     EXPECT_THAT(problem("jet3,"), testing::StartsWith("\"\" is no property"));
