@@ -46,7 +46,7 @@ std::vector<Message> FileTransfers::take(ConnectionId id, const Message& message
             ask_again(client, out);
         }
     }
-    if (!client.download && !client.upload) {
+    if (!client.download && !client.upload && !client.ended_upload) {
         clients_.erase(id);
     }
     return out;
@@ -120,6 +120,7 @@ void FileTransfers::acknowledged(Client& client, const FileAcknowledgement& ackn
 /// The header is not acknowledged; a new one begins anew.
 void FileTransfers::begin_upload(Client& client, const FileHeader& header) {
     client.upload.reset();
+    client.ended_upload.reset();
     if (header.blocks > 0) {
         client.upload = Upload{header.path, {}, header.blocks, 0, {}};
     }
@@ -127,7 +128,7 @@ void FileTransfers::begin_upload(Client& client, const FileHeader& header) {
 
 void FileTransfers::take_block(Client& client, const FileBlock& block, Troubles& troubles, Replies& out) {
     if (!client.upload) {
-        out.emplace_back(FileAcknowledgement{block.number, FileVerdict::cancel}); // no header, no file
+        take_block_after_end(client, block, out);
         return;
     }
     Upload& upload = *client.upload;
@@ -159,7 +160,17 @@ void FileTransfers::take_block(Client& client, const FileBlock& block, Troubles&
     }
     const bool written = files_.write(upload.path, std::move(upload.bytes));
     client.upload.reset();
-    out.emplace_back(FileAcknowledgement{block.number, written ? FileVerdict::ok : FileVerdict::cancel});
+    client.ended_upload = Ending{block.number, written ? FileVerdict::ok : FileVerdict::cancel};
+    out.emplace_back(FileAcknowledgement{block.number, client.ended_upload->verdict});
+}
+
+/// The last block again, because the word on it was lost: the same word. Anything else has no header, and so no file.
+void FileTransfers::take_block_after_end(const Client& client, const FileBlock& block, Replies& out) {
+    const bool again = client.ended_upload && client.ended_upload->block == block.number;
+    const FileVerdict verdict = !again           ? FileVerdict::cancel
+                                : block.intact() ? client.ended_upload->verdict
+                                                 : FileVerdict::send_again;
+    out.emplace_back(FileAcknowledgement{block.number, verdict});
 }
 
 /// A block that could not be read at all.

@@ -56,9 +56,15 @@ private:
         std::uint32_t taken = 0;
         std::optional<std::uint32_t> first{}; ///< number of the first block: 0 or 1, as the host counts
     };
+    /// What the last block of an upload ended with. The client sends it again when that word gets lost.
+    struct Ending {
+        std::uint32_t block = 0;
+        protocol::FileVerdict verdict = protocol::FileVerdict::ok;
+    };
     struct Client {
         std::optional<Download> download;
         std::optional<Upload> upload;
+        std::optional<Ending> ended_upload; ///< the last one, until another begins
     };
 
     void list(std::string_view path, Replies& out) const;
@@ -68,6 +74,7 @@ private:
                       Replies& out);
     void begin_upload(Client& client, const protocol::FileHeader& header);
     void take_block(Client& client, const protocol::FileBlock& block, Troubles& troubles, Replies& out);
+    static void take_block_after_end(const Client& client, const protocol::FileBlock& block, Replies& out);
     void ask_again(const Client& client, Replies& out) const;
     [[nodiscard]] bool block_fails();
 

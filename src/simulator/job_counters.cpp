@@ -42,12 +42,13 @@ void CounterSet::reset(const protocol::CounterReset& reset) {
     }
 }
 
-void CounterSet::set_limit(const protocol::CounterParameter& parameter) {
+bool CounterSet::set_limit(const protocol::CounterParameter& parameter) {
     if (parameter.counter < 1 || parameter.counter > counters_.size()) {
-        return;
+        return false;
     }
     Counter& counter = counters_[parameter.counter - 1];
     (parameter.limit == protocol::CounterLimit::start ? counter.next_start : counter.next_end) = parameter.value;
+    return true;
 }
 
 std::optional<std::uint64_t> CounterSet::limit(std::uint32_t id, protocol::CounterLimit which) const {

@@ -24,8 +24,8 @@ public:
     void printed();
     /// Back to the job's start or the given one; id 0 = all. Limits sent before do not begin to hold.
     void reset(const protocol::CounterReset& reset);
-    /// Holds once the counter has reached its end.
-    void set_limit(const protocol::CounterParameter& parameter);
+    /// Holds once the counter has reached its end. False if there is no such counter.
+    bool set_limit(const protocol::CounterParameter& parameter);
     /// The limit that holds now, or none if there is no such counter.
     [[nodiscard]] std::optional<std::uint64_t> limit(std::uint32_t id, protocol::CounterLimit which) const;
     [[nodiscard]] protocol::JobCounters state() const;

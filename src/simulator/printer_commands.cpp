@@ -36,11 +36,11 @@ void PrinterModel::receive(ConnectionId connection, const protocol::Frame& frame
         send(connection, echo, false);
     }
     if (frame.group == Group::parameter && frame.payload.starts_with(protocol::code(Parameter::NR))) {
-        // An announcement replaces one whose frame got lost: the host repeats both.
+        // An announcement replaces one whose frame got lost: the host repeats both. A sum that cannot be read was
+        // damaged on its way and agrees with no frame: the host wants the next one checked all the same.
         const Message message = protocol::parse_message(frame, settings_.profile.escapes);
-        if (const auto* announced = std::get_if<protocol::NextCrc>(&message)) {
-            awaited_crcs_[connection] = announced->crc;
-        }
+        const auto* announced = std::get_if<protocol::NextCrc>(&message);
+        awaited_crcs_[connection] = announced == nullptr ? std::nullopt : std::optional{announced->crc};
         return;
     }
     const bool secured = awaited_crcs_.contains(connection) && frame.group != Group::file;
@@ -73,11 +73,11 @@ void PrinterModel::receive_in_standby(const protocol::Frame& frame, ConnectionId
 }
 
 bool PrinterModel::crc_agrees(ConnectionId connection, const protocol::Frame& frame) {
-    const std::uint32_t announced = awaited_crcs_.at(connection);
+    const std::optional<std::uint32_t> announced = awaited_crcs_.at(connection);
     std::uint32_t calculated = protocol::crc32(frame.raw);
     awaited_crcs_.erase(connection);
     if (calculated == announced && troubles_.take(Trouble::refused_crc)) {
-        calculated = ~announced;
+        calculated = ~calculated;
     }
     if (calculated == announced) {
         send(connection, protocol::ActionMessage{Action::crc_ok}, false);

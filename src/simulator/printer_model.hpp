@@ -208,7 +208,7 @@ private:
     protocol::MachineState machine_ = protocol::MachineState::standby;
     protocol::NozzleState nozzle_ = protocol::NozzleState::invalid;
     bool cover_open_ = false;
-    bool job_changed_ = true;
+    bool job_changed_ = true; ///< another job, or a change within it, that no `?RS` has told yet
     protocol::PrinterError error_;
     PrintJob job_;
     std::optional<PrintJob> script_; ///< being sent: begun and not ended
@@ -238,7 +238,8 @@ private:
     std::optional<Instant> panel_blocked_until_;
     std::optional<Pending<PrintJob>> pending_job_;
     std::optional<Pending<std::string>> pending_extern_text_;
-    std::map<ConnectionId, std::uint32_t> awaited_crcs_; ///< announced by `=NR`, one per client
+    std::map<ConnectionId, std::optional<std::uint32_t>>
+        awaited_crcs_; ///< announced by `=NR`, one per client; none: one that could not be read
 };
 
 } // namespace linefeed::simulator

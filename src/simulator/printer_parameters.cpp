@@ -58,7 +58,7 @@ void PrinterModel::take(const protocol::CounterReset& reset, Instant) {
 
 void PrinterModel::take(const protocol::CounterParameter& parameter, Instant) {
     if (settings_.profile.counter_parameters) {
-        counters_.set_limit(parameter);
+        job_changed_ = counters_.set_limit(parameter) || job_changed_;
     }
 }
 
@@ -75,7 +75,9 @@ void PrinterModel::take(const protocol::ExternText& text, Instant now) {
 }
 
 void PrinterModel::take(const protocol::PrintParameter& parameter, Instant) {
-    print_parameters_[static_cast<std::size_t>(parameter.type) - 1] = parameter.value;
+    std::uint32_t& value = print_parameters_[static_cast<std::size_t>(parameter.type) - 1];
+    job_changed_ = job_changed_ || value != parameter.value; // they are parameters of the job
+    value = parameter.value;
 }
 
 void PrinterModel::take(const protocol::ClockTime& clock, Instant now) {
@@ -103,6 +105,7 @@ void PrinterModel::take(const protocol::ScriptLine& line, Instant now) {
     if (line.is_begin()) {
         script_ = PrintJob{std::string{extern_job_name}, {}};
         job_.lines.clear();
+        job_changed_ = true;
     } else if (script_ && line.is_end()) {
         pending_job_ = {now + settings_.job_loading_time, *std::exchange(script_, std::nullopt)};
     } else if (script_ && script_->lines.size() < max_script_lines) {

@@ -186,6 +186,25 @@ TEST(PrinterFiles, shouldAskAgainForABlockThatIsNotRight) {
     EXPECT_EQ(printer.send("^0$FT1\t131\tIBAC\r"), "^0$FA1\t2\r");
 }
 
+TEST(PrinterFiles, shouldSayAgainHowAnUploadEnded) {
+    Printer printer;
+    printer.send("^0$FHFFSDISK\\Jobs\\x.job\t2\r^0$FT1\t131\tIBAC\r");
+    EXPECT_EQ(printer.send("^0$FT2\t1\tAB\r"), "^0$FA2\t1\r");
+    EXPECT_EQ(printer.send("^0$FT2\t1\tAB\r"), "^0$FA2\t1\r") << "the word on the last block was lost";
+    EXPECT_EQ(printer.send("^0$FT2\t2\tAB\r"), "^0$FA2\t0\r") << "again, and damaged";
+    EXPECT_EQ(printer.send("^0$FT1\t131\tIBAC\r"), "^0$FA1\t2\r") << "an earlier one has no header";
+    EXPECT_EQ(printer.send("^0$FT2\t1\tAB\r", 2), "^0$FA2\t2\r") << "another client has no header";
+    EXPECT_THAT(printer.send("^0$RFFFSDISK\\Jobs\\x.job\r"), StartsWith("^0$FHFFSDISK\\Jobs\\x.job\t1\r^0$FT1\t132\t"))
+        << "stored once";
+
+    printer.send("^0$FHC:\\x.job\t1\r");
+    EXPECT_EQ(printer.send("^0$FT1\t1\tAB\r"), "^0$FA1\t2\r");
+    EXPECT_EQ(printer.send("^0$FT1\t1\tAB\r"), "^0$FA1\t2\r") << "refused stays refused";
+
+    printer.send("^0$FHFFSDISK\\Jobs\\x.job\t1\r^0$FT1\t1\tAB\r^0$FHFFSDISK\\Jobs\\y.job\t0\r");
+    EXPECT_EQ(printer.send("^0$FT1\t1\tAB\r"), "^0$FA1\t2\r") << "another header ends that";
+}
+
 TEST(PrinterFiles, shouldTakeBlocksCountedFrom0) {
     Printer printer;
     EXPECT_EQ(printer.send("^0$FHFFSDISK\\Jobs\\x.job\t2\r^0$FT0\t131\tIBAC\r^0$FT1\t1\tAB\r"),

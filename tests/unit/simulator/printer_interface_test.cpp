@@ -25,6 +25,7 @@ TEST(PrinterScripts, shouldReplaceTheJobWhenTheyEnd) {
     printer.rs();
     EXPECT_THAT(printer.send("^0?JB\r"), HasSubstr("\r^0*OBJ [1 0 0 0 (ISO1_7x5) (Testprint)"));
     printer.send("^0*BEGINLJSCRIPT [()]\r^0*one \\^\\\\\r");
+    EXPECT_EQ(printer.rs(), "^0=RS2\t5\t0\t0\t9\t1\r");
     EXPECT_EQ(printer.send("^0?JB\r"), "^0*BEGINLJSCRIPT\r^0*ENDLJSCRIPT\r") << "BEGIN deletes the current job";
     EXPECT_EQ(printer.send("^0?JL\r"), "^0=JL\\FFSDISK\\JOBS\\Testprint.job\r");
     printer.send("^0*two\r^0*ENDLJSCRIPT []\r^0*lost\r");

@@ -101,6 +101,17 @@ TEST(PrinterCrc, shouldTellItsOwnSumAndNotExecuteWhenItIsWrong) {
     EXPECT_EQ(printer.sm(), "^0=SM256\t0\t0\t0\t1\r"); // and only the next frame is checked
 }
 
+TEST(PrinterCrc, shouldExecuteNoFrameWhoseAnnouncedSumCannotBeRead) {
+    for (const char* damaged : {"", "abc", "39574x7711", "99999999999", "-1"}) {
+        Printer printer;
+        EXPECT_EQ(printer.send("^0=NR" + std::string{damaged} + "\r^0?JL\r"), "^0=FC3957421711\r") << damaged;
+        printer.send("^0=NR" + std::string{damaged} + "\r^0=CM5\r");
+        EXPECT_EQ(printer.sm(), "^0=SM256\t0\t0\t0\t1\r") << damaged;
+        EXPECT_EQ(printer.send("^0=NR" + std::string{damaged} + "\r^0=NR3957421711\r^0?JL\r").substr(0, 5), "^0!OK")
+            << "the host repeats both";
+    }
+}
+
 TEST(PrinterCrc, shouldConfirmCommandsWithoutAnAnswerAndCheckRecords) {
     Printer printer;
     // Sums from zlib: python3 -c 'import zlib; print(zlib.crc32(b"^0=MR1\ta"))'

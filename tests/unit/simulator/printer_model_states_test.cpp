@@ -231,6 +231,25 @@ TEST(PrinterJobs, shouldFlagAJobTheOperatorLoaded) {
     EXPECT_EQ(printer.send("^0?JL\r"), "^0=JLX.job\r");
 }
 
+TEST(PrinterJobs, shouldFlagChangesWithinTheJob) {
+    PrinterSettings settings;
+    settings.counters = {{1, 9, 0}};
+    Printer printer{settings};
+    printer.rs();
+    const auto flag_after = [&printer](const char* frame) {
+        printer.send(frame);
+        const std::string told = printer.rs();
+        EXPECT_EQ(printer.rs(), "^0=RS2\t5\t0\t0\t9\t0\r") << "told once";
+        return told.substr(told.rfind('\t') + 1);
+    };
+    EXPECT_EQ(flag_after("^0=PR2\t31000\r"), "1\r");
+    EXPECT_EQ(flag_after("^0=PR2\t31000\r"), "0\r") << "the value that it has";
+    EXPECT_EQ(flag_after("^0=CP1\t2\t99\r"), "1\r");
+    EXPECT_EQ(flag_after("^0=CP7\t2\t99\r"), "0\r") << "the job has no such counter";
+    EXPECT_EQ(flag_after("^0*BEGINLJSCRIPT\r"), "1\r") << "the job's file is deleted";
+    EXPECT_EQ(flag_after("^0=MR1\ta\r^0=CC5\t9\r^0!RC\r"), "0\r") << "what is printed, not how";
+}
+
 TEST(PrinterPower, shouldLoseTheMailingButNoCounterInAPowerCycle) {
     PrinterSettings settings;
     settings.total_prints = 7;
