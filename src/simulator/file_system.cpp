@@ -42,7 +42,8 @@ bool has_joker(std::string_view text) {
     return text.find_first_of("*?") != std::string_view::npos;
 }
 
-/// A job in the language of LJ scripts, of which the simulator knows no more than that it consists of lines.
+/// A job in the language of LJ scripts, of which the simulator knows no more than its lines and the texts of its
+/// objects.
 std::string job_script(std::string_view name) {
     std::string script = "JLPAR [60 1 0 3 10000 0 0 00:00 1 7000 0 0 1000 0 0]\r\nBEGINJOB [0 (";
     script.append(name).append(")]\r\nJOBPAR [0 0 0 100 0 0 0 0 () 1 1 55000 0 1]\r\nOBJ [1 0 0 0 (ISO1_7x5) (");

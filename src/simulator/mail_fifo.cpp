@@ -14,6 +14,7 @@ MailSlot& MailFifo::push() {
     LINEFEED_ASSERT(!full());
     MailSlot& slot = slots_[(std::size_t{first_} + records_) % slots_.size()];
     slot.starts_sequence = records_ == 0;
+    slot.has_number = true;
     slot.prints_left = 1;
     ++records_;
     return slot;

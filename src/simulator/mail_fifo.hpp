@@ -14,6 +14,7 @@ namespace linefeed::simulator {
 /// One record in the printer.
 struct MailSlot {
     RecordNumber number;
+    bool has_number = true;        ///< false: none that could be read, so that it is no lawful record; `number` is 0
     Instant arrived;               ///< when its last byte was read
     bool starts_sequence = false;  ///< it found the FIFO empty, so any number is lawful
     std::uint32_t prints_left = 1; ///< more than 1 only for number 0 with `rN`

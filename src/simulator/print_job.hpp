@@ -20,6 +20,10 @@ inline constexpr std::string_view extern_job_name = "EXTERN";
 /// A script that goes on beyond this is cut: the printer's memory ends too.
 inline constexpr std::size_t max_script_lines = 10000;
 
+/// What the job prints of its own: the texts of its objects (`OBJ [… (font) (text) …]`), joined by TAB. The name of a
+/// job without such texts, so that its products can be told from others.
+[[nodiscard]] std::string text_of(const PrintJob& job);
+
 /// The job in a file: its lines end with CR, LF or both.
 [[nodiscard]] PrintJob job_from_file(std::string path, std::string_view content);
 

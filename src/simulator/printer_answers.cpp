@@ -193,11 +193,11 @@ std::vector<Message> PrinterModel::script() const {
     return lines;
 }
 
-/// `?GW`: the record loaded for the next print; without one the extern text, or the name of the job.
+/// `?GW`: the record loaded for the next print; without one what a PrintGo would print.
 std::vector<Message> PrinterModel::picture() const {
     constexpr std::uint32_t job_id = 1;
     const MailSlot* const loaded = fifo_.loaded();
-    const std::string& text = loaded != nullptr ? loaded->text : extern_text_.empty() ? job_.path : extern_text_;
+    const std::string& text = loaded != nullptr ? loaded->text : last_zero_text_ ? *last_zero_text_ : own_text();
     std::vector<Message> messages;
     for (const protocol::WysiwygLine& line : protocol::to_lines(draw(text, job_id, wysiwyg_start_))) {
         messages.emplace_back(line);

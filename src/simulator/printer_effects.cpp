@@ -18,6 +18,20 @@ void write_lead(std::ostream& out, const std::optional<Duration>& lead) {
     }
 }
 
+std::string_view name_of(PrintSource source) {
+    switch (source) {
+    case PrintSource::record:
+        return "";
+    case PrintSource::last_record_again:
+        return "again ";
+    case PrintSource::extern_text:
+        return "the extern text ";
+    case PrintSource::job:
+        return "the job ";
+    }
+    return "";
+}
+
 void write_visible(std::ostream& out, std::string_view bytes) {
     for (const char byte : bytes) {
         switch (byte) {
@@ -46,7 +60,7 @@ std::ostream& operator<<(std::ostream& out, const Reply& effect) {
 }
 
 std::ostream& operator<<(std::ostream& out, const Printed& effect) {
-    out << effect.time << ": printed " << effect.number << " \"";
+    out << effect.time << ": printed " << name_of(effect.source) << effect.number << " \"";
     write_visible(out, effect.text);
     out << '"';
     write_lead(out, effect.lead_time);

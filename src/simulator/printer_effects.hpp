@@ -29,13 +29,21 @@ struct Reply {
     friend bool operator==(const Reply&, const Reply&) = default;
 };
 
+/// Where a print has its text from.
+enum class PrintSource : std::uint8_t {
+    record,            ///< the one whose turn it was
+    last_record_again, ///< number 0, and none came after it
+    extern_text,       ///< `=ET`; no record has come yet
+    job,               ///< its static texts, and wildcards where nobody has sent a text yet
+};
+
 /// A product got a print: one line of the tape. Issued at the PrintGo.
 struct Printed {
     Instant time;
     RecordNumber number;
-    std::string text; ///< the fields joined by TAB, bytes as received
-    std::optional<Duration>
-        lead_time; ///< from the record's arrival to the PrintGo; none for the last record printed again
+    std::string text;                  ///< the fields joined by TAB, bytes as received
+    std::optional<Duration> lead_time; ///< from the record's arrival to the PrintGo; none if it is not of a record
+    PrintSource source = PrintSource::record;
     friend bool operator==(const Printed&, const Printed&) = default;
 };
 
@@ -46,7 +54,8 @@ struct PrintAborted {
     friend bool operator==(const PrintAborted&, const PrintAborted&) = default;
 };
 
-/// A PrintGo found no record that had been there for the margin. Error 5043 follows.
+/// A PrintGo found no record that had been there for the margin. In numbered operation error 5043 follows; before the
+/// first record, the product gets what the job shows without (that is an underrun only if a record came too late).
 struct Underrun {
     Instant time;
     std::optional<Duration> lead_time; ///< of the record that came too late; none: the FIFO was empty

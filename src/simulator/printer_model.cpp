@@ -39,6 +39,7 @@ PrinterModel::PrinterModel(PrinterSettings settings, Instant now)
 void PrinterModel::power_up(Instant now) {
     transmitter_ = Transmitter{settings_.habits.line_end};
     lose_mailing();
+    show_wildcards();
     last_printed_ = RecordNumber{};
     last_print_finished_ = true;
     print_gos_ = 0;
@@ -72,7 +73,6 @@ void PrinterModel::lose_mailing() {
     fifo_.clear();
     stop_at_ = RecordNumber{};
     previous_.reset();
-    last_zero_text_.reset();
 }
 
 std::optional<Instant> PrinterModel::next_event() const {
@@ -118,7 +118,7 @@ void PrinterModel::handle_event_at(Instant due) {
     } else if (pending_job_ && pending_job_->due == due) {
         finish_job_loading(std::exchange(pending_job_, std::nullopt)->value);
     } else {
-        extern_text_ = std::exchange(pending_extern_text_, std::nullopt)->value;
+        show_extern_text(std::exchange(pending_extern_text_, std::nullopt)->value);
     }
 }
 
@@ -245,7 +245,24 @@ void PrinterModel::load_job(std::string path, Instant now) {
 void PrinterModel::finish_job_loading(PrintJob job) {
     job_ = std::move(job);
     job_changed_ = true;
+    show_wildcards();
     counters_.load(settings_.counters); // limits that the host has sent are lost (protocol, section 4, CP)
+}
+
+/// A job begins with what its editor has put in the places of texts to come (manual, annex B).
+void PrinterModel::show_wildcards() {
+    job_text_ = text_of(job_);
+    extern_text_.clear();
+    last_zero_text_.reset();
+    numbered_ = false;
+}
+
+/// From now on it stands where the last record stood. An empty FIFO stays an error while numbered records are printed;
+/// what a stop has emptied is over.
+void PrinterModel::show_extern_text(std::string text) {
+    extern_text_ = std::move(text);
+    last_zero_text_.reset();
+    numbered_ = numbered_ && printing();
 }
 
 /// The job in the file of that path, if there is one.

@@ -134,11 +134,15 @@ private:
     void restart(Instant now);
     void show_error(std::int32_t raw, Instant now);
     void finish_job_loading(PrintJob job);
+    void show_wildcards();
+    void show_extern_text(std::string text);
     [[nodiscard]] std::optional<PrintJob> job_at(const std::string& path) const;
 
     // printer_prints.cpp: what products get
     void print_loaded(Instant now);
-    void print_last_again(Instant now);
+    void print_without_record(PrintSource source, const std::string& text, Instant now);
+    PrintGoOutcome stop_with_error(std::uint32_t code, Instant now);
+    [[nodiscard]] const std::string& own_text() const;
     void begin_print(RecordNumber number, Instant now);
     void finish_print(Instant now);
     [[nodiscard]] bool is_lawful(const MailSlot& slot) const;
@@ -160,6 +164,7 @@ private:
 
     // printer_parameters.cpp: what clients set. A message without a take() is one that only printers send.
     void take(const protocol::ActionMessage& message, Instant now) { act(message.action, now); }
+    [[nodiscard]] MailSlot* slot_for_record(Instant now);
     void take(const protocol::MailRecord& record, Instant now);
     void take(const protocol::MalformedMessage& message, Instant now);
     void take(const protocol::StopAt& stop, Instant now);
@@ -212,8 +217,9 @@ private:
     protocol::PrinterError error_;
     PrintJob job_;
     std::optional<PrintJob> script_; ///< being sent: begun and not ended
-    std::string extern_text_;
-    std::uint32_t inputs_ = 0; ///< a bit for each Input
+    std::string job_text_;           ///< what the loaded job prints of its own: static texts and wildcards
+    std::string extern_text_;        ///< empty: the job's own
+    std::uint32_t inputs_ = 0;       ///< a bit for each Input
     bool display_on_ = true;
     std::uint32_t wysiwyg_start_ = 0;
 
@@ -221,8 +227,9 @@ private:
     RecordNumber stop_at_;
     bool last_print_finished_ = true;
     std::optional<RecordNumber> previous_; ///< printed last in the sequence under way; none: a new one begins
+    bool numbered_ = false; ///< the last record that the job printed had a number: the FIFO may not get empty
     std::optional<std::string>
-        last_zero_text_; ///< of the last print, if its number was 0: printed again when nothing comes
+        last_zero_text_; ///< of the last record, if its number was 0: printed again when nothing comes
     std::uint32_t product_counter_ = 0;
     std::uint32_t stop_after_ = 0;
     std::uint32_t total_prints_ = 0;

@@ -8,35 +8,51 @@ namespace linefeed::simulator {
 
 namespace error_code = protocol::error_code;
 
-void PrinterModel::take(const protocol::MailRecord& record, Instant now) {
+/// The place of the record that has come: none if it finds none.
+MailSlot* PrinterModel::slot_for_record(Instant now) {
+    if (settings_.habits.no_mailing_field) {
+        return nullptr;
+    }
     if (fifo_.full()) {
         show_error(error_with_window(ErrorWindow::warning, error_code::buffer_full), now);
-        return;
+        return nullptr;
     }
     MailSlot& slot = fifo_.push();
-    slot.number = record.number;
     slot.arrived = now;
     slot.text.clear();
+    return &slot;
+}
+
+void PrinterModel::take(const protocol::MailRecord& record, Instant now) {
+    MailSlot* const slot = slot_for_record(now);
+    if (slot == nullptr) {
+        return;
+    }
+    slot->number = record.number;
     for (const std::string& field : record.fields) {
         if (&field != &record.fields.front()) {
-            slot.text += '\t';
+            slot->text += '\t';
         }
-        slot.text += field;
+        slot->text += field;
     }
     if (!settings_.profile.record_properties && !record.properties.empty()) {
-        slot.text += '\t'; // to old firmware the block is a field like any other
-        protocol::append_properties(slot.text, record.properties);
+        slot->text += '\t'; // to old firmware the block is a field like any other
+        protocol::append_properties(slot->text, record.properties);
     } else if (record.number == RecordNumber{}) {
-        slot.prints_left = std::max(record.properties.repetitions.value_or(1), 1U);
+        slot->prints_left = std::max(record.properties.repetitions.value_or(1), 1U);
     }
 }
 
-/// A record without a lawful number is an error; anything else that cannot be read is ignored.
+/// A record without a number that can be read takes its place like any other: numbers are checked when it is its turn.
+/// Anything else that cannot be read is ignored.
 void PrinterModel::take(const protocol::MalformedMessage& message, Instant now) {
-    if (message.group == protocol::Group::parameter &&
-        message.payload.starts_with(protocol::code(protocol::Parameter::MR))) {
-        show_error(error_with_window(ErrorWindow::error, error_code::number_wrong), now);
-        stop_printing(now);
+    if (message.group != protocol::Group::parameter ||
+        !message.payload.starts_with(protocol::code(protocol::Parameter::MR))) {
+        return;
+    }
+    if (MailSlot* const slot = slot_for_record(now)) {
+        slot->number = RecordNumber{};
+        slot->has_number = false;
     }
 }
 
@@ -70,8 +86,10 @@ void PrinterModel::take(const protocol::JobName& job, Instant now) {
     pending_job_ = {now + settings_.job_loading_time, found ? *std::move(found) : PrintJob{job.path, {}}};
 }
 
+/// Behind a job that is still being loaded: it is meant for that one.
 void PrinterModel::take(const protocol::ExternText& text, Instant now) {
-    pending_extern_text_ = {now + settings_.extern_text_time, text.text};
+    const Instant begin = pending_job_ ? pending_job_->due : now;
+    pending_extern_text_ = {begin + settings_.extern_text_time, text.text};
 }
 
 void PrinterModel::take(const protocol::PrintParameter& parameter, Instant) {

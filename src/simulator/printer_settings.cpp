@@ -12,7 +12,7 @@ struct NamedHabit {
     bool Habits::*member;
 };
 
-constexpr std::array<NamedHabit, 14> switches{{
+constexpr std::array<NamedHabit, 15> switches{{
     {"ignore-stop-at", &Habits::ignore_stop_at},
     {"stop-at-only-while-printing", &Habits::stop_at_only_while_printing},
     {"stale-mail-status", &Habits::stale_mail_status},
@@ -27,14 +27,17 @@ constexpr std::array<NamedHabit, 14> switches{{
     {"missing-jobs-refused", &Habits::missing_jobs_refused},
     {"no-total-counter", &Habits::no_total_counter},
     {"tank-levels", &Habits::tank_levels},
+    {"no-mailing-field", &Habits::no_mailing_field},
 }};
 
 } // namespace
 
 bool set_habit(Habits& habits, std::string_view name) {
-    std::string wanted{name};
+    constexpr std::string_view switched_off = "=off";
+    const bool on = !name.ends_with(switched_off);
+    std::string wanted{name.substr(0, name.size() - (on ? 0 : switched_off.size()))};
     std::replace(wanted.begin(), wanted.end(), '_', '-');
-    if (wanted == "crlf" || wanted == "lfcr") {
+    if (on && (wanted == "crlf" || wanted == "lfcr")) {
         habits.line_end = wanted == "crlf" ? LineEnd::cr_lf : LineEnd::lf_cr;
         return true;
     }
@@ -43,7 +46,7 @@ bool set_habit(Habits& habits, std::string_view name) {
     if (found == switches.end()) {
         return false;
     }
-    habits.*(found->member) = true;
+    habits.*(found->member) = on;
     return true;
 }
 
@@ -75,6 +78,12 @@ protocol::VersionInfo versions_of(const PrinterSettings& settings) {
     versions.system_type = versions.type;
     versions.language_pack = "V1.30";
     return versions;
+}
+
+Habits habits_of_version(const PrinterSettings& settings) {
+    Habits habits;
+    habits.ignore_stop_at = settings.profile.is_jet2neo() && versions_of(settings).firmware == "V75.0.11.2";
+    return habits;
 }
 
 } // namespace linefeed::simulator

@@ -1,5 +1,6 @@
 // What differs between printers, firmwares and installations: everything about the simulated printer that is a setting.
-// A firmware habit of the field notes is a switch here, off by default, so that the default printer is the manual's.
+// A firmware habit of the field notes is a switch here, off by default, so that the default printer is the manual's;
+// linefeed-sim switches on what is known of the version that it plays.
 #pragma once
 
 #include "base/time.hpp"
@@ -43,13 +44,14 @@ struct Habits {
     bool missing_jobs_refused = false;        ///< `=JL` with a path where no file is leaves the job as it is
     bool no_total_counter = false;            ///< `=CC` ends before the total print counter
     bool tank_levels = false;                 ///< `?SL` is answered
+    bool no_mailing_field = false; ///< set up wrong: the job has no field that takes records; it swallows them
     LineEnd line_end = LineEnd::cr;
 
     friend bool operator==(const Habits&, const Habits&) = default;
 };
 
 /// The names that set_habit() knows, in the order of help texts.
-inline constexpr std::array<std::string_view, 16> habit_names{"ignore-stop-at",
+inline constexpr std::array<std::string_view, 17> habit_names{"ignore-stop-at",
                                                               "stop-at-only-while-printing",
                                                               "stale-mail-status",
                                                               "sixth-value",
@@ -63,10 +65,11 @@ inline constexpr std::array<std::string_view, 16> habit_names{"ignore-stop-at",
                                                               "missing-jobs-refused",
                                                               "no-total-counter",
                                                               "tank-levels",
+                                                              "no-mailing-field",
                                                               "crlf",
                                                               "lfcr"};
 
-/// Switches the habit of that name on (`_` may stand for `-`). False if there is none.
+/// Switches the habit of that name on, or with `=off` behind it off (`_` may stand for `-`). False if there is none.
 [[nodiscard]] bool set_habit(Habits& habits, std::string_view name);
 
 /// Largest FIFO depth that can be set.
@@ -104,5 +107,7 @@ struct PrinterSettings {
 
 /// What `?VS` answers for the profile.
 [[nodiscard]] protocol::VersionInfo versions_of(const PrinterSettings& settings);
+/// The habits that the field notes report of the very version that `?VS` tells.
+[[nodiscard]] Habits habits_of_version(const PrinterSettings& settings);
 
 } // namespace linefeed::simulator

@@ -76,8 +76,17 @@ void RunStatistics::add(const Printed& print) {
     numbers.add(print.number);
     if (print.lead_time) {
         add_lead_time(*this, *print.lead_time);
-    } else {
+    }
+    switch (print.source) {
+    case PrintSource::record:
+        return;
+    case PrintSource::last_record_again:
         ++repeats;
+        return;
+    case PrintSource::extern_text:
+    case PrintSource::job:
+        ++without_record;
+        return;
     }
 }
 
@@ -95,7 +104,8 @@ void RunStatistics::add(const ErrorRaised& error) {
 void write_summary(std::ostream& out, const RunStatistics& run) {
     out << "linefeed-sim: summary\n";
     out << "prints: " << run.prints << " (numbers " << run.numbers.smallest() << " to " << run.numbers.largest()
-        << "; printed again: " << run.repeats << "; broken off: " << run.aborted << ")\n";
+        << "; printed again: " << run.repeats << "; without a record: " << run.without_record
+        << "; broken off: " << run.aborted << ")\n";
     out << "doubles: " << run.numbers.doubles() << ", gaps: " << run.numbers.gaps()
         << ", missing numbers: " << run.numbers.missing() << '\n';
     out << "unprinted products: " << run.unprinted_products << '\n';
@@ -130,6 +140,7 @@ std::string summary_json(const RunStatistics& run) {
         {"first_number", run.numbers.smallest().value()},
         {"last_number", run.numbers.largest().value()},
         {"printed_again", run.repeats},
+        {"without_record", run.without_record},
         {"broken_off", run.aborted},
         {"doubles", run.numbers.doubles()},
         {"gaps", run.numbers.gaps()},

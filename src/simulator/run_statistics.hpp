@@ -18,6 +18,8 @@ namespace linefeed::simulator {
 struct RunStatistics {
     std::uint64_t prints = 0;
     std::uint64_t repeats = 0;            ///< of these: the last record of number 0 printed again
+    std::uint64_t without_record = 0;     ///< of these: an extern text or the job's own. To a host that sends records,
+                                          ///< each is a product that it has missed
     std::uint64_t aborted = 0;            ///< of these: broken off
     std::uint64_t unprinted_products = 0; ///< passed the sensor without a print
     std::uint64_t underruns = 0;

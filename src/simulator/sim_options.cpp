@@ -74,7 +74,11 @@ void add_printer_options(CLI::App& app, SimOptions& typed, PrinterSettings& prin
     for (const std::string_view name : habit_names) {
         names.append(names.empty() ? "" : " ").append(name);
     }
-    app.add_option("--habit", typed.habits, "Firmware habit, repeatable: " + names)->group(group);
+    app.add_option("--habit", typed.habits,
+                   "Habit of a firmware or of whoever set it up, repeatable; NAME=off: "
+                   "not this one of the version that it plays: " +
+                       names)
+        ->group(group);
 }
 
 void add_line_options(CLI::App& app, SimOptions& typed, ConveyorSettings& conveyor) {

@@ -136,6 +136,7 @@ void set_printer(PrinterSettings& printer, const SimOptions& typed, const Convey
     for (const std::string& text : typed.input_functions) {
         set_input_function(printer, text);
     }
+    printer.habits = habits_of_version(printer);
     for (const std::string& name : typed.habits) {
         if (!set_habit(printer.habits, name)) {
             refuse("--habit", "there is no habit \"" + name + "\"; see --help");

@@ -349,6 +349,7 @@ class TestCase(unittest.TestCase):
     def assert_clean(self, summary, depth=256):
         """Nothing went wrong at the printer, by its own account."""
         self.assertEqual((0, 0, 0), (summary["doubles"], summary["gaps"], summary["underruns"]), summary)
+        self.assertEqual(0, summary["without_record"], "products that carry no record")
         self.assertEqual(0, summary["damaged_frames"], summary)
         self.assertLessEqual(summary["highest_fill"], depth, summary)
         self.assertNotIn("1015", summary["errors"], "the printer's FIFO ran over")

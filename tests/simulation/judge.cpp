@@ -65,6 +65,12 @@ void Judge::underrun(bool explained) {
     }
 }
 
+void Judge::product_without_record(bool explained) {
+    if (!explained) {
+        violation("a product without a record");
+    }
+}
+
 void Judge::buffer_overfull() {
     violation("more records than the depth in the printer");
 }

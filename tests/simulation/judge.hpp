@@ -21,6 +21,8 @@ public:
     void printed(RecordNumber number, std::string_view text);
     void print_aborted(RecordNumber number);
     void underrun(bool explained);
+    /// A product got what the job shows before the first record: it was missed as at an underrun, but nothing stops.
+    void product_without_record(bool explained);
     void buffer_overfull();
     void numbers_out_of_order();
 

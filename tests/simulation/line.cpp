@@ -172,6 +172,12 @@ void Line::carry_out(simulator::Effect& effect) {
     if (const auto* print = std::get_if<simulator::Printed>(&effect)) {
         context_.trace.note(context_.now, "print", print->number.value());
         judge_.printed(print->number, print->text);
+        const bool without_record =
+            print->source == simulator::PrintSource::job || print->source == simulator::PrintSource::extern_text;
+        if (without_record) {
+            context_.trace.note(context_.now, "no record on the product");
+            judge_.product_without_record(others_interfere_ || underrun_is_explained());
+        }
     } else if (auto* reply = std::get_if<simulator::Reply>(&effect)) {
         if (reply->connection.value != other_client_id) {
             context_.trace.say(context_.now, "printer says", reply->bytes);

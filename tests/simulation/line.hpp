@@ -21,7 +21,7 @@ class Line {
 public:
     Line(Context& context, Judge& judge, Wire& wire, Random random);
 
-    /// Asked at an underrun: is there an excuse for it?
+    /// Asked at an underrun, or when a product gets no record: is there an excuse for it?
     std::function<bool()> underrun_is_explained;
 
     void receive(std::uint64_t connection, std::string_view bytes);

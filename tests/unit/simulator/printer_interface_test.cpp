@@ -309,10 +309,15 @@ TEST(PrinterPicture, shouldShowAGraphicWithinAText) {
 
 TEST(PrinterPicture, shouldShowExternTextOrJobWithoutARecord) {
     Printer printer;
-    EXPECT_EQ(picture(printer).width, 6 * std::string{"\\FFSDISK\\JOBS\\Testprint.job"}.size());
+    EXPECT_EQ(picture(printer).width, 6 * std::string{"Testprint"}.size());
     printer.send("^0=ETHi\r");
     printer.wait(milliseconds{30});
     EXPECT_EQ(picture(printer).width, 12U);
+    printer.send("^0=MR0\tabc\r^0!GO\r");
+    printer.product();
+    EXPECT_EQ(picture(printer).width, 18U) << "it will be printed again";
+    printer.operate([](auto& model, Instant now) { model.load_job("none", now); });
+    EXPECT_EQ(picture(printer).width, 24U) << "the name of a job without texts";
 }
 
 // --- troubles and profiles

@@ -151,18 +151,37 @@ TEST(PrinterMailing, shouldWantTheRecordThreeMillisecondsBeforeThePrintGo) {
     EXPECT_EQ(in_time.tape.at(0).lead_time, Duration{milliseconds{3}});
 
     Printer late;
-    late.send("^0!GO\r^0=MR1\ta\r");
+    late.send("^0=MR1\ta\r^0!GO\r");
+    late.product();
+    late.send("^0=MR2\tb\r");
     EXPECT_EQ(late.product(milliseconds{3} - Duration{1}), PrintGoOutcome::stopped);
     EXPECT_THAT(late.error_codes(), ElementsAre(5043));
-    EXPECT_THAT(late.tape, IsEmpty());
-    EXPECT_EQ(late.sm(), "^0=SM256\t0\t0\t0\t1\r");
+    EXPECT_THAT(late.printed_numbers(), ElementsAre(1));
+    EXPECT_EQ(late.sm(), "^0=SM256\t0\t1\t0\t1\r");
+}
+
+TEST(PrinterMailing, shouldPrintTheJobsOwnTextUntilTheFirstRecordIsThereInTime) {
+    Printer printer;
+    printer.send("^0!GO\r^0=MR1\ta\r");
+    EXPECT_EQ(printer.product(milliseconds{3} - Duration{1}), PrintGoOutcome::printed);
+    EXPECT_THAT(printer.others,
+                Contains(Effect{Underrun{printer.now - milliseconds{2}, milliseconds{3} - Duration{1}}}));
+    EXPECT_EQ(printer.product(), PrintGoOutcome::printed);
+    ASSERT_EQ(printer.tape.size(), 2U);
+    EXPECT_EQ(printer.tape[0].source, PrintSource::job);
+    EXPECT_EQ(printer.tape[0].text, "Testprint");
+    EXPECT_EQ(printer.tape[1].number, RecordNumber{1});
+    EXPECT_EQ(printer.product(), PrintGoOutcome::stopped) << "from the first number on, the FIFO may not get empty";
+    EXPECT_THAT(printer.error_codes(), ElementsAre(5043));
 }
 
 TEST(PrinterMailing, shouldTakeTheMarginFromTheSettings) {
     PrinterSettings settings;
     settings.margin = milliseconds{7};
     Printer printer{settings};
-    printer.send("^0!GO\r^0=MR1\ta\r");
+    printer.send("^0=MR1\ta\r^0!GO\r");
+    printer.product();
+    printer.send("^0=MR2\tb\r");
     EXPECT_EQ(printer.product(milliseconds{6}), PrintGoOutcome::stopped);
 }
 
@@ -183,13 +202,125 @@ TEST(PrinterMailing, shouldPrintTheLastRecordAgainWhenItsNumberWasZero) {
     EXPECT_THAT(printer.error_codes(), IsEmpty());
 }
 
-TEST(PrinterMailing, shouldForgetTheLastRecordAtAStop) {
+TEST(PrinterMailing, shouldPrintTheLastRecordOfNumberZeroAgainAfterAStopButNotAfterAJobLoad) {
     Printer printer;
-    printer.send("^0=MR0\tsame\r^0!GO\r");
+    printer.send("^0=MR0\tsame\r^0=MR0\tlost\r^0!GO\r");
     printer.product();
     printer.send("^0!ST\r^0!GO\r");
+    printer.product();
+    printer.operate([](auto& model, Instant now) { model.load_job("\\FFSDISK\\JOBS\\DM.JOB", now); });
+    printer.product();
+    ASSERT_EQ(printer.tape.size(), 3U);
+    EXPECT_EQ(printer.tape[1].text, "same");
+    EXPECT_EQ(printer.tape[2].text, "DM") << "the wildcards of the editor";
+    EXPECT_THAT(printer.error_codes(), IsEmpty());
+}
+
+TEST(PrinterMailing, shouldStayNumberedOverAStopUntilAnotherJobIsLoaded) {
+    Printer printer;
+    printer.send("^0=MR5\ta\r^0!GO\r");
+    printer.product();
+    printer.send("^0!ST\r^0!GO\r");
+    EXPECT_EQ(printer.product(), PrintGoOutcome::stopped) << "nothing with a number is printed twice";
+    EXPECT_THAT(printer.error_codes(), ElementsAre(5043));
+    printer.send("^0=JLFFSDISK\\JOBS\\DM.JOB\r^0!GO\r");
+    printer.wait(milliseconds{100});
+    EXPECT_EQ(printer.product(), PrintGoOutcome::printed);
+    EXPECT_EQ(printer.tape.back().text, "DM");
+    EXPECT_EQ(printer.sm(), "^0=SM256\t0\t0\t0\t1\r") << "what was printed last has no number";
+}
+
+TEST(PrinterMailing, shouldCountNoPrintOfTheJobAsTheLeadingZero) {
+    PrinterSettings settings;
+    settings.habits.lead_in_law = true;
+    Printer printer{settings};
+    printer.send("^0!GO\r");
+    printer.product();
+    printer.send("^0=MR5\ta\r");
+    EXPECT_EQ(printer.product(), PrintGoOutcome::stopped);
+    EXPECT_THAT(printer.error_codes(), ElementsAre(1019));
+}
+
+TEST(PrinterExternText, shouldBePrintedAtEveryPrintGo) {
+    Printer printer;
+    printer.send("^0=ETHallo\r^0!GO\r");
+    EXPECT_EQ(printer.product(), PrintGoOutcome::printed); // it takes 30 ms
+    printer.wait(milliseconds{30});
+    printer.products(2);
+    printer.send("^0=ETWelt\r");
+    printer.wait(milliseconds{30});
+    printer.product();
+    printer.send("^0=ET\r"); // the zero string
+    printer.wait(milliseconds{30});
+    printer.product();
+    std::vector<std::string> texts;
+    for (const Printed& print : printer.tape) {
+        EXPECT_EQ(print.number, RecordNumber{});
+        EXPECT_EQ(print.lead_time, std::nullopt);
+        texts.push_back(print.text);
+    }
+    EXPECT_THAT(texts, ElementsAre("Testprint", "Hallo", "Hallo", "Welt", "Testprint"));
+    EXPECT_EQ(printer.tape[1].source, PrintSource::extern_text);
+    EXPECT_EQ(printer.send("^0?CC\r"), "^0=CC5\t0\t5\r");
+    EXPECT_EQ(printer.rs(), "^0=RS2\t6\t0\t0\t9\t1\r");
+}
+
+TEST(PrinterExternText, shouldStandWhereTheLastRecordStood) {
+    Printer printer;
+    printer.send("^0=MR0\trecord\r^0!GO\r");
+    printer.product();
+    printer.send("^0=ETtext\r");
+    printer.wait(milliseconds{30});
+    printer.product();
+    printer.send("^0=MR0\tagain a record\r");
+    printer.products(2);
+    ASSERT_EQ(printer.tape.size(), 4U);
+    EXPECT_EQ(printer.tape[1].text, "text");
+    EXPECT_EQ(printer.tape[3].text, "again a record");
+}
+
+TEST(PrinterExternText, shouldSaveNoNumberedRunButBeginAfterIt) {
+    Printer printer;
+    printer.send("^0=MR5\ta\r^0!GO\r");
+    printer.product();
+    printer.send("^0=ETtext\r");
+    printer.wait(milliseconds{30});
     EXPECT_EQ(printer.product(), PrintGoOutcome::stopped);
     EXPECT_THAT(printer.error_codes(), ElementsAre(5043));
+    printer.send("^0=ETtext\r^0!GO\r");
+    printer.wait(milliseconds{30});
+    EXPECT_EQ(printer.product(), PrintGoOutcome::stopped) << "it came while the printer was printing";
+    printer.send("^0=ETtext\r");
+    printer.wait(milliseconds{30});
+    printer.send("^0!GO\r");
+    EXPECT_EQ(printer.product(), PrintGoOutcome::printed);
+    EXPECT_EQ(printer.tape.back().text, "text");
+}
+
+TEST(PrinterExternText, shouldWaitForTheJobThatItIsMeantFor) {
+    Printer printer;
+    printer.send("^0=JLFFSDISK\\JOBS\\DM.JOB\r^0=ETtext\r^0!GO\r");
+    printer.wait(milliseconds{130});
+    printer.product();
+    EXPECT_EQ(printer.tape.back().text, "text");
+    printer.operate([](auto& model, Instant now) { model.power_cycle(now); });
+    printer.send("^0!GO\r");
+    printer.product();
+    EXPECT_EQ(printer.tape.back().text, "DM") << "the job is loaded anew";
+}
+
+TEST(PrinterScripts, shouldBePrintedWithoutAnyRecord) {
+    Printer printer;
+    printer.send("^0!GO\r^0*BEGINLJSCRIPT [()]\r^0*OBJ [1 0 0 0 (ISO1_7x5)  (Los (7) A) 1 0 ()]\r"
+                 "^0*OBJ [2 0 0 0 (ISO1_7x5) () 1 0 ()]\r^0*OBJ[3 0 0 0 (ISO1_7x5) (B) 1]\r");
+    printer.product();
+    printer.send("^0*ENDLJSCRIPT []\r");
+    printer.wait(milliseconds{100});
+    printer.products(2);
+    ASSERT_EQ(printer.tape.size(), 3U);
+    EXPECT_EQ(printer.tape[0].text, "Testprint") << "the job that is loaded, until the script has ended";
+    EXPECT_EQ(printer.tape[2].text, "Los (7) A\tB");
+    EXPECT_THAT(printer.error_codes(), IsEmpty());
 }
 
 TEST(PrinterMailing, shouldRepeatOnlyRecordsOfNumberZero) {
@@ -207,23 +338,34 @@ TEST(PrinterMailing, shouldRepeatOnlyRecordsOfNumberZero) {
     EXPECT_EQ(printer.tape[4].text, "next");
 }
 
-TEST(PrinterMailing, shouldDropARecordWithoutReadableNumberAndStop) {
+TEST(PrinterMailing, shouldStopAtTheTurnOfARecordWithoutReadableNumber) {
     for (const char* record : {"", "\ta", "x\ta", "007\ta", "4294967296\ta", "-1\ta"}) {
         Printer printer;
         printer.fill(1, 3);
-        printer.send("^0!GO\r^0=MR" + std::string{record} + "\r");
+        printer.send("^0!GO\r^0=MR" + std::string{record} + "\r^0=MR4\tb\r");
+        EXPECT_EQ(printer.sm(), "^0=SM256\t4\t0\t0\t1\r") << record;
+        printer.products(3);
+        EXPECT_EQ(printer.rs(), "^0=RS2\t6\t0\t0\t9\t1\r") << "numbers are checked during readout; " << record;
+        EXPECT_EQ(printer.product(), PrintGoOutcome::stopped) << record;
         EXPECT_THAT(printer.error_codes(), ElementsAre(1018)) << record;
-        EXPECT_EQ(printer.rs(), "^0=RS2\t5\t301990906\t0\t9\t1\r") << record;
-        EXPECT_EQ(printer.sm(), "^0=SM256\t0\t0\t0\t1\r") << record;
+        EXPECT_EQ(printer.rs(), "^0=RS2\t5\t301990906\t0\t9\t0\r") << record;
+        EXPECT_EQ(printer.sm(), "^0=SM256\t0\t3\t0\t1\r") << record;
     }
 }
 
-TEST(PrinterMailing, shouldKeepTheFifoWhenABadNumberComesBeforeTheStart) {
-    Printer printer;
-    printer.fill(1, 3);
+TEST(PrinterMailing, shouldTakeARecordWithoutNumberOnlyIfThereIsRoom) {
+    PrinterSettings settings;
+    settings.depth = 2;
+    Printer printer{settings};
+    printer.fill(1, 2);
     printer.send("^0=MRx\ta\r");
-    EXPECT_THAT(printer.error_codes(), ElementsAre(1018));
-    EXPECT_EQ(printer.sm(), "^0=SM256\t2\t0\t0\t1\r");
+    EXPECT_THAT(printer.error_codes(), ElementsAre(1015));
+    EXPECT_EQ(printer.sm(), "^0=SM2\t1\t0\t0\t1\r");
+    printer.send("^0!GO\r");
+    printer.products(2);
+    printer.fill(3, 4); // in the places of those that were printed: none of them is without a number
+    printer.products(2);
+    EXPECT_THAT(printer.printed_numbers(), ElementsAre(1, 2, 3, 4));
 }
 
 TEST(PrinterMailing, shouldTruncateSilentlyWhatIsLongerThan2048Bytes) {

@@ -84,6 +84,31 @@ TEST(PrinterFraming, shouldIgnoreUnknownCommandsAndExcessParameters) {
     EXPECT_EQ(printer.rs(), "^0=RS2\t5\t0\t0\t9\t1\r");
 }
 
+TEST(PrinterHabits, shouldIgnoreStopPointsInTheVeryVersionThatDoes) {
+    const auto ignores = [](const char* profile, const char* firmware) {
+        PrinterSettings settings;
+        settings.profile = *protocol::profile_by_name(profile);
+        settings.firmware = firmware;
+        return habits_of_version(settings).ignore_stop_at;
+    };
+    EXPECT_TRUE(ignores("jet2neo", "")); // V75.0.11.2
+    EXPECT_TRUE(ignores("jet2neo", "V75.0.11.2"));
+    EXPECT_FALSE(ignores("jet2neo", "V75.0.12.0"));
+    EXPECT_FALSE(ignores("jet2neo-v71", ""));
+    EXPECT_FALSE(ignores("jet3up", "V75.0.11.2"));
+}
+
+TEST(PrinterHabits, shouldSwallowRecordsWithoutAMailingField) {
+    Printer printer{with_habit("no-mailing-field")};
+    printer.fill(1, 300);
+    printer.send("^0=MR\r^0!GO\r");
+    EXPECT_EQ(printer.sm(), "^0=SM256\t0\t0\t0\t1\r");
+    printer.products(2);
+    ASSERT_EQ(printer.tape.size(), 2U);
+    EXPECT_EQ(printer.tape[1].text, "Testprint");
+    EXPECT_THAT(printer.error_codes(), testing::IsEmpty());
+}
+
 TEST(PrinterCrc, shouldHoldTheManualsSequence) {
     for (const char* profile : {"jet3", "jet3up"}) {
         PrinterSettings settings;
@@ -154,6 +179,11 @@ TEST(PrinterHabits, shouldKnowEveryNameOfTheHelp) {
     }
     Habits habits;
     EXPECT_FALSE(set_habit(habits, "nonsense"));
+    EXPECT_FALSE(set_habit(habits, "nonsense=off"));
+    EXPECT_FALSE(set_habit(habits, "crlf=off"));
+    EXPECT_EQ(habits, Habits{});
+    EXPECT_TRUE(set_habit(habits, "ignore-stop-at"));
+    EXPECT_TRUE(set_habit(habits, "ignore_stop_at=off"));
     EXPECT_EQ(habits, Habits{});
 }
 

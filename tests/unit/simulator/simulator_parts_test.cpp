@@ -285,13 +285,16 @@ TEST(RunStatistics, shouldTellTheRunInWordsAndAsJson) {
     RunStatistics run;
     run.depth = 256;
     run.add(Printed{Instant{}, RecordNumber{5}, "a", milliseconds{12}});
-    run.add(Printed{Instant{}, RecordNumber{0}, "a", std::nullopt});
+    run.add(Printed{Instant{}, RecordNumber{0}, "a", std::nullopt, PrintSource::last_record_again});
+    run.add(Printed{Instant{}, RecordNumber{0}, "job", std::nullopt, PrintSource::job});
+    run.add(Printed{Instant{}, RecordNumber{0}, "text", std::nullopt, PrintSource::extern_text});
     run.add(Underrun{Instant{}, milliseconds{2}});
     run.add(ErrorRaised{Instant{}, protocol::PrinterError{0x13000000 | 5043}});
     run.note_fill(17);
     std::ostringstream words;
     write_summary(words, run);
-    EXPECT_THAT(words.str(), testing::HasSubstr("prints: 2 (numbers 5 to 5; printed again: 1; broken off: 0)\n"));
+    EXPECT_THAT(words.str(), testing::HasSubstr("prints: 4 (numbers 5 to 5; printed again: 1; "
+                                                "without a record: 2; broken off: 0)\n"));
     EXPECT_THAT(words.str(), testing::HasSubstr("errors: 5043 x 1\n"));
     EXPECT_THAT(words.str(), testing::HasSubstr("smallest lead time before a PrintGo: 2.000 ms\n"));
     EXPECT_THAT(words.str(), testing::HasSubstr("  10-20 ms: 1\n"));
@@ -302,6 +305,7 @@ TEST(RunStatistics, shouldTellTheRunInWordsAndAsJson) {
     EXPECT_THAT(json, testing::HasSubstr("{\"count\":1,\"from_ms\":2.0,\"to_ms\":3.0}"));
     EXPECT_THAT(json, testing::HasSubstr("{\"count\":0,\"from_ms\":60000.0,\"to_ms\":null}"));
     EXPECT_THAT(json, testing::HasSubstr("\"lowest_fill\":null"));
+    EXPECT_THAT(json, testing::HasSubstr("\"without_record\":2"));
 }
 
 } // namespace
