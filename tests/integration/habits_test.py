@@ -70,7 +70,7 @@ class Habits(harness.TestCase):
         self.assert_code(5, refused)
         self.assertIn("without escapes", refused.out + refused.err)
         self.assertEqual([], old.prints())
-        new = self.simulator("--profile", "jet2neo", "--rate", 300)
+        new = self.simulator("--profile", "jet2neo", "--habit", "ignore-stop-at=off", "--rate", 300)
         self.assert_code(0, self.print(file, new, "--profile", "auto"))
         self.assertEqual([(1, "a^b"), (2, "a\\b")], new.prints())
 

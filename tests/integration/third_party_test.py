@@ -98,7 +98,10 @@ class Stranger:
 
 class ThirdParty(harness.TestCase):
     def stranger(self, *options):
-        stranger = Stranger(self.simulator(*options).port)
+        return self.stranger_at(self.simulator(*options))
+
+    def stranger_at(self, printer):
+        stranger = Stranger(printer.port)
         self.addCleanup(stranger.socket.close)
         return stranger
 
@@ -138,6 +141,66 @@ class ThirdParty(harness.TestCase):
         stranger.send("?JB")
         self.assertEqual(["*BEGINLJSCRIPT", "*OBJ 1", "*OBJ 2", "*ENDLJSCRIPT"], [stranger.read() for _ in range(4)])
 
+    def test_an_extern_text_on_products(self):
+        printer = self.simulator("--rate", 100)
+        stranger = self.stranger_at(printer)
+        for text in ("Hallo", "Welt"):
+            stranger.send(f"=ET{text}")
+            while stranger.ask("?ET") != f"=ET{text}":
+                pass
+            stranger.send("!GO")
+            printed = len(printer.prints())
+            printer.wait_for_prints(printed + 3)
+            stranger.send("!ST")
+            self.assertEqual("=RS2\t5\t0", stranger.ask("?RS")[:8])
+        printed = printer.prints()
+        self.assertEqual({(0, "Hallo"), (0, "Welt")}, set(printed))
+        self.assertEqual(sorted(printed), printed, "one text behind the other")
+        self.assertEqual(["0", "0", "1"], stranger.ask("?SM").split("\t")[2:5], "no record was printed")
+        summary = printer.stop()
+        self.assertEqual(({}, 0, summary["prints"]), (summary["errors"], summary["underruns"], summary["without_record"]))
+
+    def test_a_static_job_on_products(self):
+        printer = self.simulator("--rate", 100)
+        stranger = self.stranger_at(printer)
+        stranger.send("!GO", "*BEGINLJSCRIPT [()]", "*BEGINJOB [0 (Lot)]", "*OBJ [1 0 0 0 (ISO1_7x5) (Lot 4711) 1 0 ()]", "*ENDJOB []",
+                      "*ENDLJSCRIPT []")
+        while stranger.ask("?JL") != "=JLEXTERN":
+            pass
+        printed = len(printer.prints())
+        printer.wait_for_prints(printed + 5)
+        self.assertEqual("6", stranger.ask("?RS").split("\t")[1])
+        self.assertEqual((0, "Lot 4711"), printer.prints()[-1])
+        self.assertEqual({}, printer.stop()["errors"])
+
+    def test_mailing_behind_an_extern_text(self):
+        printer = self.simulator("--rate", 100)
+        stranger = self.stranger_at(printer)
+        stranger.send("=ETtext", "!GO")
+        printer.wait_for_prints(2)
+        stranger.send("=CM3", "=MR1\ta", "=MR2\tb", "=MR3\tc")
+        printer.wait_for_prints(5)
+        while stranger.ask("?RS").split("\t")[1] == "6":
+            pass
+        self.assertEqual([(1, "a"), (2, "b"), (3, "c")], printer.prints()[-3:])
+        self.assertEqual("3", stranger.ask("?SM").split("\t")[2])
+        stranger.send("!EQ", "!GO")
+        while stranger.ask("?RS").split("\t")[2] == "0":
+            pass
+        self.assertEqual({"1223": 1, "5043": 1}, printer.stop()["errors"], "an empty FIFO is an error behind a number")
+
+    def test_a_record_without_number(self):
+        printer = self.simulator("--rate", 100)
+        stranger = self.stranger_at(printer)
+        stranger.send("=MR1\ta", "=MR", "=MR2\tb")
+        self.assertEqual("=SM256\t2\t0", stranger.ask("?SM")[:10])
+        self.assertEqual("0", stranger.ask("?RS").split("\t")[2])
+        stranger.send("!GO")
+        while stranger.ask("?RS").split("\t")[1] == "6":
+            pass
+        self.assertEqual([(1, "a")], printer.prints())
+        self.assertEqual({"1018": 1}, printer.stop()["errors"])
+
     def test_the_picture(self):
         stranger = self.stranger()
         stranger.send("=MR1\t(8 3 FF81FF)", "?GW")
@@ -148,6 +211,21 @@ class ThirdParty(harness.TestCase):
         picture = from_nibbles("".join(lines))
         self.assertEqual([3, 8, 1, 3], [int.from_bytes(picture[i:i + 4], "little") for i in range(0, 16, 4)])
         self.assertEqual(b"\xff\x81\xff", picture[16:])
+
+    def test_the_firmware_without_stop_point(self):
+        for options, kept in ((), "0"), (("--habit", "ignore-stop-at=off"), "5"), (("--firmware", "V75.0.12.0"), "5"):
+            stranger = self.stranger("--profile", "jet2neo", *options)
+            stranger.send("=CM5")
+            self.assertEqual(kept, stranger.ask("?SM").split("\t")[3], options)
+
+    def test_a_job_without_mailing_field(self):
+        printer = self.simulator("--rate", 100, "--habit", "no-mailing-field")
+        stranger = self.stranger_at(printer)
+        stranger.send("=MR1\ta", "=MR2\tb")
+        self.assertEqual("=SM256\t0\t0", stranger.ask("?SM")[:10])
+        stranger.send("!GO")
+        printer.wait_for_prints(3)
+        self.assertEqual({(0, "Testprint")}, set(printer.prints()))
 
     def test_old_firmware(self):
         stranger = self.stranger("--profile", "jet3", "--firmware", "V60.0.1.17", "--speed", 300)

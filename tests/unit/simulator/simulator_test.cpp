@@ -231,6 +231,23 @@ TEST(Simulator, shouldCountMissesAndGoOn) {
     EXPECT_EQ(run.errors.count(5043), 0U);
 }
 
+TEST(Simulator, shouldCountWhatIsMissedBeforeTheFirstRecord) {
+    SimulatorSettings settings;
+    settings.conveyor.rate = 500;
+    settings.conveyor.keeps_grid = true;
+    settings.count_misses = true;
+    RunningSimulator simulator{settings};
+    {
+        Client client{simulator};
+        client.send("^0!GO\r");
+        std::this_thread::sleep_for(milliseconds{60});
+        client.ask("^0?SM\r");
+    }
+    const RunStatistics& run = simulator.wait_for_end();
+    EXPECT_EQ(run.prints, 0U) << "a benchmark is of hosts that send records";
+    EXPECT_GE(run.unprinted_products, 5U);
+}
+
 TEST(Fleet, shouldRunSeveralPrintersAndReportOnEach) {
     SimulatorSettings settings;
     settings.port = "0";
