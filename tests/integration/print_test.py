@@ -21,10 +21,11 @@ class Judge(harness.TestCase):
                 self.judge(expected, printed)
 
     def test_an_untidy_printer(self):
-        good = {"doubles": 0, "gaps": 0, "underruns": 0, "damaged_frames": 0, "highest_fill": 256, "errors": {"1223": 1}}
+        good = {"doubles": 0, "gaps": 0, "underruns": 0, "without_record": 0, "damaged_frames": 0, "highest_fill": 256,
+                "errors": {"1223": 1}}
         self.assert_clean(good)
         for bad in ({"doubles": 1}, {"gaps": 1}, {"underruns": 1}, {"damaged_frames": 1}, {"highest_fill": 257}, {"errors": {"1015": 1}},
-                    {"errors": {"5043": 1}}):
+                    {"errors": {"5043": 1}}, {"without_record": 1}):
             with self.assertRaises(AssertionError):
                 self.assert_clean({**good, **bad})
 
