@@ -37,7 +37,11 @@ void Line::receive(std::uint64_t connection, std::string_view bytes) {
             if (deed_ && connection != other_client_id) {
                 about_to_take(*frame);
             }
+            const bool was_printing = printer_->printing();
             printer_->receive({connection}, *frame, context_.now);
+            if (!was_printing && printer_->printing()) {
+                started_by_host_ = connection != other_client_id;
+            }
         } else if (std::holds_alternative<std::monostate>(result)) {
             break;
         }
@@ -176,7 +180,7 @@ void Line::carry_out(simulator::Effect& effect) {
             print->source == simulator::PrintSource::job || print->source == simulator::PrintSource::extern_text;
         if (without_record) {
             context_.trace.note(context_.now, "no record on the product");
-            judge_.product_without_record(others_interfere_ || underrun_is_explained());
+            judge_.product_without_record(!started_by_host_ || others_interfere_ || underrun_is_explained());
         }
     } else if (auto* reply = std::get_if<simulator::Reply>(&effect)) {
         if (reply->connection.value != other_client_id) {
@@ -201,6 +205,7 @@ void Line::carry_out(simulator::Effect& effect) {
     } else if (const auto* state = std::get_if<simulator::StateChanged>(&effect)) {
         context_.trace.note(context_.now, "machine state", static_cast<std::uint64_t>(state->machine),
                             state->cover_open ? 1 : 0);
+        started_by_host_ = started_by_host_ && printer_->printing();
         others_interfere_ = others_interfere_ && (printer_->printing() || printer_->fifo().records() > 0);
     } else if (std::holds_alternative<simulator::ConnectionsLost>(effect)) {
         context_.trace.note(context_.now, "printer restarted");

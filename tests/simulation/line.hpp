@@ -89,6 +89,7 @@ private:
     Instant belt_stands_until_{};
     bool fast_ = false;
     bool others_interfere_ = false;
+    bool started_by_host_ = false; ///< or by somebody who does not ask whether records are there
     // at()
     std::function<void()> deed_;
     Moment deed_at_ = Moment::record;
