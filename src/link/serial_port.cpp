@@ -63,19 +63,31 @@ Failure cannot_open(int error) {
     }
 }
 
-/// The printer's bytes as they are, 8N1; nobody's hanging up ends a line that has no modem.
+/// The printer's bytes as they are, 8N1; nobody's hanging up ends a line that has no modem. What others have left set
+/// must not add bytes of its own (IXOFF), nor take any away.
 bool set_up(int descriptor, const SerialAddress& address) {
     termios line{};
     if (::tcgetattr(descriptor, &line) != 0) {
         return false;
     }
     ::cfmakeraw(&line);
-    line.c_cflag &= ~static_cast<tcflag_t>(CSTOPB | PARENB | CRTSCTS | HUPCL);
+    line.c_iflag &= ~static_cast<tcflag_t>(IXOFF | IXANY | INPCK);
+    line.c_cflag &= ~static_cast<tcflag_t>(CSTOPB | PARENB | CMSPAR | CRTSCTS | HUPCL);
     line.c_cflag |= CLOCAL | CREAD | (address.flow == FlowControl::rtscts ? CRTSCTS : 0U);
     line.c_iflag |= IGNBRK;
     line.c_cc[VMIN] = 1;
     line.c_cc[VTIME] = 0;
-    return ::cfsetspeed(&line, code_of(address.baud)) == 0 && ::tcsetattr(descriptor, TCSANOW, &line) == 0;
+    if (::cfsetspeed(&line, code_of(address.baud)) != 0 || ::tcsetattr(descriptor, TCSANOW, &line) != 0) {
+        return false;
+    }
+    termios taken{}; // tcsetattr() is content if anything at all was set
+    if (::tcgetattr(descriptor, &taken) != 0) {
+        return false;
+    }
+    constexpr tcflag_t needed = CSIZE | CSTOPB | PARENB | CRTSCTS;
+    errno = EINVAL;
+    return ::cfgetospeed(&taken) == ::cfgetospeed(&line) && (taken.c_cflag & needed) == (line.c_cflag & needed) &&
+           (taken.c_iflag & (IXON | IXOFF)) == 0;
 }
 
 /// Drivers gather bytes for up to 16 ms unless told otherwise. Not all can be told: udev rules do it for USB adapters.
@@ -112,7 +124,8 @@ Result<int> open_serial(const SerialAddress& address) {
         return cannot_open(EBUSY);
     }
     if (::ioctl(port.get(), TIOCEXCL) != 0 || !set_up(port.get(), address)) {
-        return failed("cannot set the port to " + std::to_string(address.baud) + " baud: " + std::strerror(errno));
+        return failed("cannot set the port to " + std::to_string(address.baud) + " baud" +
+                      (address.flow == FlowControl::rtscts ? " with flow=rtscts" : "") + ": " + std::strerror(errno));
     }
     ask_for_low_latency(port.get());
     ::tcflush(port.get(), TCIFLUSH);

@@ -73,6 +73,24 @@ TEST(SerialPort, shouldSetTheLineUp) {
     ::close(port);
 }
 
+/// XON and XOFF are bytes like any other, and the port must not send some of its own.
+TEST(SerialPort, shouldUndoWhatOthersHaveSet) {
+    const Terminal terminal;
+    const int keeper = ::open(terminal.address().device.c_str(), O_RDWR | O_NOCTTY);
+    termios left{};
+    ASSERT_EQ(::tcgetattr(keeper, &left), 0);
+    left.c_iflag |= IXON | IXOFF | IXANY | INPCK | ISTRIP | ICRNL;
+    left.c_cflag |= CSTOPB | CMSPAR;
+    ASSERT_EQ(::tcsetattr(keeper, TCSANOW, &left), 0);
+    const int port = open_serial(terminal.address()).value();
+    termios line{};
+    ASSERT_EQ(::tcgetattr(port, &line), 0);
+    EXPECT_EQ(line.c_iflag & static_cast<tcflag_t>(IXON | IXOFF | IXANY | INPCK | ISTRIP | ICRNL), 0U);
+    EXPECT_EQ(line.c_cflag & static_cast<tcflag_t>(CSTOPB | CMSPAR), 0U);
+    ::close(port);
+    ::close(keeper);
+}
+
 TEST(SerialPort, shouldBeOpenForOneAtATime) {
     const Terminal terminal;
     const int port = open_serial(terminal.address()).value();
