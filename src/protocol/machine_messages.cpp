@@ -25,6 +25,8 @@ std::string_view to_string(NozzleState state) {
 
 std::string_view to_string(MachineState state) {
     switch (state) {
+    case MachineState::unknown:
+        return "unknown";
     case MachineState::standby:
         return "standby";
     case MachineState::initialising:

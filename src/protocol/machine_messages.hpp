@@ -21,6 +21,7 @@ using MaybeNumber = std::optional<std::uint32_t>;
 enum class NozzleState { invalid = 0, opens = 1, open = 2, closes = 3, closed = 4, in_between = 5 };
 /// RS, second parameter.
 enum class MachineState {
+    unknown = 0, ///< none that the manual names: some other firmware's
     standby = 1,
     initialising = 2,
     service = 3,        ///< interval or service panel

@@ -31,16 +31,14 @@ constexpr std::uint32_t year_mask = 0x3F;
 struct ShortPart {
     std::uint32_t PrinterTime::*member;
     char before;
-    std::uint32_t smallest;
-    std::uint32_t largest;
 };
 constexpr std::array<ShortPart, 6> short_parts{{
-    {&PrinterTime::year, '\0', 0, 99},
-    {&PrinterTime::month, '-', 1, 12},
-    {&PrinterTime::day, '-', 1, 31},
-    {&PrinterTime::hour, ' ', 0, 23},
-    {&PrinterTime::minute, ':', 0, 59},
-    {&PrinterTime::second, ':', 0, 59},
+    {&PrinterTime::year, '\0'},
+    {&PrinterTime::month, '-'},
+    {&PrinterTime::day, '-'},
+    {&PrinterTime::hour, ' '},
+    {&PrinterTime::minute, ':'},
+    {&PrinterTime::second, ':'},
 }};
 constexpr std::size_t part_digits = 2;
 
@@ -120,8 +118,11 @@ std::optional<PrinterTime> read_short_date(std::string_view text) {
             }
             text.remove_prefix(1);
         }
+        if (part.member == &PrinterTime::second && text.starts_with(':')) {
+            text.remove_prefix(1);
+        }
         const auto value = read_decimal<std::uint32_t>(text.substr(0, part_digits));
-        if (text.size() < part_digits || !value || *value < part.smallest || *value > part.largest) {
+        if (text.size() < part_digits || !value) {
             return std::nullopt;
         }
         time.*part.member = *value;

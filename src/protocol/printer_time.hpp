@@ -35,7 +35,8 @@ struct PrinterTime {
 
 /// Appends `yy-mm-dd hh:mm:ss`.
 void append_short_date(std::string& out, const PrinterTime& time);
-/// Reads `yy-mm-dd hh:mm:ss`, the year in 2000…2099, each part within its range.
+/// Reads `yy-mm-dd hh:mm:ss`, the year in 2000…2099; also `hh:mm::ss`, as the manual has it for the event list. The
+/// date need not exist: a clock that was never set shows 00-00-00.
 [[nodiscard]] std::optional<PrinterTime> read_short_date(std::string_view text);
 
 /// E.g. "2024-05-06 07:08:09".

@@ -20,6 +20,12 @@ std::string_view take_part(std::string_view& text) {
     return part;
 }
 
+constexpr std::uint32_t last_machine_state = 6;
+
+MachineState machine_state(std::uint32_t number) {
+    return number <= last_machine_state ? static_cast<MachineState>(number) : MachineState::unknown;
+}
+
 std::optional<ErrorEntry> read_entry(std::string_view text, const ErrorEntry*) {
     const auto time = read_short_date(take_part(text));
     const std::string_view number = take_part(text);
@@ -44,10 +50,10 @@ std::optional<EventEntry> read_entry(std::string_view text, const EventEntry*) {
         entry.*member = *value;
     }
     const auto machine = read_decimal<std::uint32_t>(take_part(text));
-    if (!time || !machine || *machine < 1 || *machine > 6) {
+    if (!time || !machine) {
         return std::nullopt;
     }
-    entry.machine = static_cast<MachineState>(*machine);
+    entry.machine = machine_state(*machine);
     return entry;
 }
 
@@ -72,10 +78,10 @@ Block read_list(ParameterReader& in) {
 
 MachineStatus read_machine_status(ParameterReader& in) {
     MachineStatus status;
-    // In standby only the machine state is valid; newer firmware may know more nozzle states.
+    // In standby only the machine state is valid; other firmware may know more states.
     const auto nozzle = in.optional_number("a nozzle state").value_or(0);
     status.nozzle = nozzle <= 5 ? static_cast<NozzleState>(nozzle) : NozzleState::invalid;
-    status.machine = static_cast<MachineState>(in.number("a machine state", 1, 6));
+    status.machine = machine_state(in.number("a machine state"));
     if (status.machine == MachineState::standby) {
         return MachineStatus{};
     }

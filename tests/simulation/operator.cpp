@@ -57,6 +57,7 @@ bool Operator::puts_printer_in_order() {
     switch (status.machine) {
     case MachineState::standby:
         return press(Action::power_on);
+    case MachineState::unknown:
     case MachineState::initialising:
         return true;
     case MachineState::ready:

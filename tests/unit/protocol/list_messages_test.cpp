@@ -43,8 +43,9 @@ TEST(EventList, shouldReadItsNineParts) {
               (EventEntry{{2024, 5, 6, 7, 8, 9}, 30, 2, 11, 40, 2400, 1000, 7100, MachineState::printing}));
     EXPECT_EQ(reason("^0=EV1\t1\t1\t24-05-06 07:08:09/30/2/11/40/2400/1000/7100\r"),
               "=EV: parameter 4 is not an entry: \"24-05-06 07:08:09/30/2/11/40/2400/1000/7...\"");
-    EXPECT_EQ(reason("^0=EV1\t1\t1\t24-05-06 07:08:09/1/1/1/1/1/1/1/7\r"),
-              "=EV: parameter 4 is not an entry: \"24-05-06 07:08:09/1/1/1/1/1/1/1/7\"");
+    EXPECT_EQ(parsed_as<EventListBlock>("^0=EV1\t1\t1\t00-00-00 07:08::09/1/1/1/1/1/1/1/7\r").entries.at(0),
+              (EventEntry{{2000, 0, 0, 7, 8, 9}, 1, 1, 1, 1, 1, 1, 1, MachineState::unknown}))
+        << "a clock that was never set, the colons of the manual, and a state of other firmware";
     EXPECT_EQ(reason("^0=EV1\t1\t1\t24-05-06 07:08:09/x/1/1/1/1/1/1/6\r"),
               "=EV: parameter 4 is not an entry: \"24-05-06 07:08:09/x/1/1/1/1/1/1/6\"");
     EXPECT_EQ(reason("^0=EV1\t99\t17\r"), "=EV: parameter 3 is not a number of entries: \"17\"");

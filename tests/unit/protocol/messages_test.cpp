@@ -46,6 +46,8 @@ TEST(Messages, shouldLeaveEmptyParametersOfTheMachineStatusAtTheirDefaults) {
 TEST(Messages, shouldTakeWhatNewerFirmwareAddsToTheMachineStatus) {
     EXPECT_EQ(parsed_as<MachineStatus>("^0=RS6\t4\t0\t0\t0\r").nozzle, NozzleState::invalid);
     EXPECT_TRUE(parsed_as<MachineStatus>("^0=RS2\t6\t0\t2\r").cover_open);
+    EXPECT_EQ(parsed_as<MachineStatus>("^0=RS2\t7\t0\t0\t0\r").machine, MachineState::unknown);
+    EXPECT_EQ(parsed_as<MachineStatus>("^0=RS2\t0\t0\t0\t0\r").machine, MachineState::unknown);
 }
 
 TEST(Messages, shouldReadNothingButTheStateInStandby) {
@@ -53,8 +55,7 @@ TEST(Messages, shouldReadNothingButTheStateInStandby) {
 }
 
 TEST(Messages, shouldRefuseAMachineStatusThatCannotBeTrue) {
-    EXPECT_EQ(reason("^0=RS2\t0\t0\t0\t0\r"), "=RS: parameter 2 is not a machine state: \"0\"");
-    EXPECT_EQ(reason("^0=RS2\t7\t0\t0\t0\r"), "=RS: parameter 2 is not a machine state: \"7\"");
+    EXPECT_EQ(reason("^0=RS2\tx\t0\t0\t0\r"), "=RS: parameter 2 is not a machine state: \"x\"");
     EXPECT_EQ(reason("^0=RS2\t6\t4294967296\r"), "=RS: parameter 3 is not an error number: \"4294967296\"");
     EXPECT_EQ(reason("^0=RS2\t6\t0\t0\tfast\r"), "=RS: parameter 5 is not a speed: \"fast\"");
     EXPECT_EQ(reason("^0=RS2\t6\t0\t0\t9\t-1\r"), "=RS: parameter 6 is not 0 or 1: \"-1\"");
@@ -206,6 +207,7 @@ TEST(Messages, shouldSayStatesInWords) {
     EXPECT_EQ(to_string(NozzleState::closes), "closes");
     EXPECT_EQ(to_string(NozzleState::closed), "closed");
     EXPECT_EQ(to_string(NozzleState::in_between), "in between");
+    EXPECT_EQ(to_string(MachineState::unknown), "unknown");
     EXPECT_EQ(to_string(MachineState::standby), "standby");
     EXPECT_EQ(to_string(MachineState::initialising), "initialising");
     EXPECT_EQ(to_string(MachineState::service), "interval or service panel");

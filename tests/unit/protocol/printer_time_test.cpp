@@ -23,13 +23,14 @@ TEST(PrinterTime, shouldReadAndWriteTheShortDate) {
     EXPECT_EQ(out, ">24-05-06 07:08:09");
     EXPECT_EQ(to_string(time), "2024-05-06 07:08:09");
     EXPECT_EQ(read_short_date("99-12-31 23:59:59")->year, 2099U);
+    EXPECT_EQ(read_short_date("24-05-06 07:08::09"), time) << "as the manual writes it for the event list";
+    EXPECT_EQ(read_short_date("00-00-00 00:00:00"), (PrinterTime{2000, 0, 0, 0, 0, 0})) << "a clock that was never set";
 }
 
 TEST(PrinterTime, shouldRefuseOtherTexts) {
-    for (const char* const text :
-         {"", "24-05-06", "24-05-06 07:08:9", "24-05-06 07:08:099", "24-05-06T07:08:09", "24-00-06 07:08:09",
-          "24-13-06 07:08:09", "24-05-00 07:08:09", "24-05-32 07:08:09", "24-05-06 24:08:09", "24-05-06 07:60:09",
-          "24-05-06 07:08:60", "2024-05-06 07:08:09", "-4-05-06 07:08:09", "24-05-06 07:08:09 "}) {
+    for (const char* const text : {"", "24-05-06", "24-05-06 07:08:9", "24-05-06 07:08:099", "24-05-06T07:08:09",
+                                   "24-05-06 07::08:09", "24-05-06 07:08:::09", "24-05-06 07:08::",
+                                   "2024-05-06 07:08:09", "-4-05-06 07:08:09", "24-05-06 07:08:09 "}) {
         EXPECT_EQ(read_short_date(text), std::nullopt) << text;
     }
 }
