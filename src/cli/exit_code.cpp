@@ -32,6 +32,7 @@ ExitCode exit_code(const feeder::Outcome& outcome) {
     case OutcomeCode::unreachable:
         return ExitCode::unreachable;
     case OutcomeCode::no_answer:
+    case OutcomeCode::not_secured:
     case OutcomeCode::link_lost:
         return outcome.issued ? ExitCode::stopped : ExitCode::unreachable;
     case OutcomeCode::records_in_doubt:

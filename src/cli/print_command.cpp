@@ -66,9 +66,9 @@ Result<ExitCode> PrintCommand::run(const std::filesystem::path& spool_path, cons
         view_.message(words);
     }
     if (options_.expected_rate) {
-        const std::string words = daemon::shortfall_words(printer, daemon::record_bytes(job_), *options_.expected_rate);
-        if (!words.empty()) {
-            view_.message("warning: " + words);
+        const auto bytes = daemon::record_bytes(job_);
+        if (const auto too_little = daemon::shortfall(printer, bytes, *options_.expected_rate)) {
+            view_.message("warning: " + too_little->words + ". " + too_little->advice);
         }
     }
     auto code = print(*spool, settings);

@@ -11,7 +11,7 @@ namespace linefeed::daemon {
 
 namespace {
 
-session::LineSettings line_of(const link::PrinterAddress& printer) {
+protocol::LineSettings line_of(const link::PrinterAddress& printer) {
     const link::SerialAddress* const serial = printer.serial();
     return {.bytes_per_second = serial == nullptr ? 0.0 : link::bytes_per_second(*serial), .crc = printer.crc};
 }
@@ -54,17 +54,18 @@ std::string line_words(const link::PrinterAddress& printer, std::size_t record_b
                           "way into a record");
 }
 
-std::string shortfall_words(const link::PrinterAddress& printer, std::size_t record_bytes,
-                            std::uint32_t products_per_second) {
+std::optional<Shortfall> shortfall(const link::PrinterAddress& printer, std::size_t record_bytes,
+                                   std::uint32_t products_per_second) {
     const link::SerialAddress* const serial = printer.serial();
     const double rate = carried_per_second(printer, record_bytes);
     if (serial == nullptr || rate >= products_per_second) {
-        return {};
+        return std::nullopt;
     }
-    return "the conveyor is to bring " + std::to_string(products_per_second) +
-           " products a second, and the serial line carries " + rate_text(rate) +
-           ": the printer will run dry and stop. Slow the conveyor down, raise the baud rate here and at the printer, "
-           "shorten the records, or connect the printer by Ethernet";
+    return Shortfall{"the conveyor is to bring " + std::to_string(products_per_second) +
+                         " products a second, and the serial line carries " + rate_text(rate) +
+                         ": the printer will run dry and stop",
+                     "Slow the conveyor down, raise the baud rate here and at the printer, shorten the records, or "
+                     "connect the printer by Ethernet."};
 }
 
 bool NoisePatience::goes_on(const feeder::Outcome& outcome, const RunProgress& progress, JobRunSettings& settings) {

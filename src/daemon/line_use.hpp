@@ -23,10 +23,14 @@ void use_line(JobRunSettings& settings, const link::PrinterAddress& printer, lin
 /// noticed without CRC32. Empty for any other.
 [[nodiscard]] std::string line_words(const link::PrinterAddress& printer, std::size_t record_bytes);
 
-/// What the operator has to do where so many products a second are more than a serial line carries. Empty: it carries
-/// them, or is none.
-[[nodiscard]] std::string shortfall_words(const link::PrinterAddress& printer, std::size_t record_bytes,
-                                          std::uint32_t products_per_second);
+/// A serial line carries less than the conveyor brings.
+struct Shortfall {
+    std::string words;  ///< what is so
+    std::string advice; ///< what the operator has to do about it
+};
+/// Absent: the line carries so many products a second, or is not serial.
+[[nodiscard]] std::optional<Shortfall> shortfall(const link::PrinterAddress& printer, std::size_t record_bytes,
+                                                 std::uint32_t products_per_second);
 
 /// A run that ended because of noise is gone on with at once, since nobody has stopped the line but linefeed itself;
 /// but not for ever if nothing gets printed. On a bad line little is kept in the FIFO: every record behind the one that

@@ -37,6 +37,14 @@ Finding reachable(const PreflightFacts& facts) {
         return problem(check, "the printer closed the connection in the middle",
                        "Look whether another program is connected to it, and whether its interface protocol is JET3.");
     }
+    if (!facts.machine && facts.oddities.unsecured) {
+        return problem(check, "the printer answers, but without CRC32",
+                       "Its firmware knows no =NR: take crc=on out of its address.");
+    }
+    if (!facts.machine && !facts.oddities.unreadable.empty()) {
+        return problem(check, "the printer's answer cannot be read: " + facts.oddities.unreadable,
+                       "Its firmware may need another version of linefeed; a noisy serial line needs crc=on.");
+    }
     if (!facts.machine && facts.oddities.damaged_bytes > 0) {
         return problem(check, "something answers, but not in the printer's language",
                        "Look whether the address is the printer's, and whether its interface protocol is JET3.");
@@ -117,6 +125,9 @@ Finding ready(const protocol::MachineStatus& machine, const PreflightRules& rule
     constexpr const char* check = "ready";
     const std::string state{to_string(machine.machine)};
     switch (machine.machine) {
+    case MachineState::unknown:
+        return problem(check, "the printer is in a state that linefeed does not know",
+                       "Look at the printer; its firmware may need another version of linefeed.");
     case MachineState::standby:
         return problem(check, "the printer is in standby", "Switch it on.");
     case MachineState::initialising:
@@ -274,9 +285,8 @@ std::optional<Finding> line(const PreflightRules& rules) {
     const link::PrinterAddress& printer = rules.printer.address;
     const std::size_t bytes = rules.records.bytes > 0 ? rules.records.bytes : record_bytes({});
     if (rules.printer.expected_rate) {
-        if (const std::string words = shortfall_words(printer, bytes, *rules.printer.expected_rate); !words.empty()) {
-            const std::size_t advice = words.find(". ") + 2;
-            return warning(check, words.substr(0, advice - 2), words.substr(advice) + '.');
+        if (auto too_little = shortfall(printer, bytes, *rules.printer.expected_rate)) {
+            return warning(check, std::move(too_little->words), std::move(too_little->advice));
         }
     }
     const std::string carries = line_words(printer, bytes);

@@ -20,12 +20,16 @@ Feeder::Feeder(const FeederSettings& settings, const FeederPlan& plan)
     , broken_off_(plan.open ? plan.open->broken_off : RecordNumber{}) {}
 
 void Feeder::on_machine_status(const protocol::MachineStatus& status, Instant now, Actions& out) {
+    if (status.machine == MachineState::unknown && answers_lost_ < max_answers_lost) {
+        on_lost_answer(Parameter::RS, now, out); // damaged rather than new
+        return;
+    }
     answers_lost_ = 0;
     status_ = status;
     status_outstanding_ = false;
     switch (phase_) {
     case Phase::identifying:
-        if (status_.machine == MachineState::standby) {
+        if (status_.machine == MachineState::standby || status_.machine == MachineState::unknown) {
             end(OutcomeCode::not_ready, out); // nothing else is answered in standby
             return;
         }
@@ -316,6 +320,12 @@ void Feeder::counters_lost(Instant now, Actions& out) {
     }
 }
 
+void Feeder::on_proven_record(Instant now) {
+    if (phase_ == Phase::verifying) {
+        deadline_ = now + settings_.verify_timeout;
+    }
+}
+
 void Feeder::on_silence(Actions& out) {
     if (phase_ == Phase::ended) {
         return;
@@ -328,6 +338,12 @@ void Feeder::on_silence(Actions& out) {
         out.push_back(Command{protocol::Action::stop_print}); // it may still listen
     }
     end(OutcomeCode::no_answer, out);
+}
+
+void Feeder::on_not_secured(Actions& out) {
+    if (phase_ != Phase::ended) {
+        end(OutcomeCode::not_secured, out);
+    }
 }
 
 void Feeder::on_link_lost(Actions& out) {

@@ -98,6 +98,7 @@ public:
     void start(Instant now, Actions& out);
 
     // Facts from the printer. `now` is when the answer arrived.
+    /// Precondition: the state is one that the manual names, or the printer is being identified.
     void on_machine_status(const protocol::MachineStatus& status, Instant now, Actions& out);
     void on_mail_status(const protocol::MailStatus& status, Instant now, Actions& out);
     void on_counters(const protocol::Counters& counters, Instant now, Actions& out);
@@ -109,8 +110,13 @@ public:
     /// This record, the last that went out, may lie in the FIFO with a damaged text: it must not be printed. What was
     /// to be sent behind it is not sent.
     void on_unproven_record(RecordNumber number, Instant now, Actions& out);
+    /// The printer has confirmed one more record on a secured line, which may take long for the first fill.
+    void on_proven_record(Instant now);
     /// The printer answers nothing at all.
     void on_silence(Actions& out);
+    /// Answers come, but none of them secured by CRC32, which was asked for. Precondition: no frame has been proven
+    /// yet, so no record has gone out.
+    void on_not_secured(Actions& out);
     void on_link_lost(Actions& out);
 
     // Facts from the ledger and the pages.

@@ -38,6 +38,8 @@ std::string_view to_string(OutcomeCode code) {
         return "printer_restarted";
     case OutcomeCode::no_answer:
         return "no_answer";
+    case OutcomeCode::not_secured:
+        return "not_secured";
     case OutcomeCode::link_lost:
         return "link_lost";
     case OutcomeCode::unreachable:
@@ -64,6 +66,8 @@ namespace {
 std::string not_ready(protocol::MachineState machine) {
     const std::string state = "the printer is not ready: it is in state \"" + std::string{to_string(machine)} + "\"; ";
     switch (machine) {
+    case protocol::MachineState::unknown:
+        return state + "linefeed knows no such state of this firmware; look at the printer, and start again";
     case protocol::MachineState::standby:
         return state + "switch it on, open the nozzle, and start again";
     case protocol::MachineState::initialising:
@@ -129,6 +133,9 @@ std::string describe(const Outcome& outcome) {
         return "the printer lost its memory: it was switched off or restarted";
     case OutcomeCode::no_answer:
         return "the printer does not answer: is it in standby, or is this the address of another device?";
+    case OutcomeCode::not_secured:
+        return "the printer answers, but without CRC32: its firmware knows no =NR, or something on the line takes it "
+               "away; take crc=on out of the printer's address";
     case OutcomeCode::link_lost:
         return "the connection to the printer was lost";
     case OutcomeCode::unreachable:

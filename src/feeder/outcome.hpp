@@ -28,6 +28,7 @@ enum class OutcomeCode {
     impossible_report,  ///< the printer reports numbers that were never sent: somebody else feeds it
     printer_restarted,  ///< the printer lost its memory: it was switched off or restarted
     no_answer,          ///< an inquiry was not answered in time
+    not_secured,        ///< answers come, but none secured by CRC32 as it was asked for
     link_lost,          ///< the connection broke
     unreachable,        ///< there never was a connection
     records_in_doubt,   ///< nobody knows whether some records were printed

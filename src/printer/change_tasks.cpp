@@ -39,7 +39,7 @@ Result<Json> machine_behind(PrinterClient& printer) {
 }
 
 Result<Json> sent(PrinterClient& printer, const protocol::Message& message) {
-    return printer.send(message) ? machine_behind(printer) : no_answer(printer, Parameter::RS);
+    return printer.send(message) ? machine_behind(printer) : not_confirmed(printer);
 }
 
 template <Action action>
@@ -51,7 +51,7 @@ Result<Json> act(PrinterClient& printer, const Order& /*order*/) {
 template <Action action>
 Result<Json> act_unheard(PrinterClient& printer, const Order& /*order*/) {
     if (!printer.send(action)) {
-        return no_answer(printer, Parameter::RS);
+        return not_confirmed(printer);
     }
     const auto status = printer.ask<MachineStatus>(Parameter::RS);
     return status ? json_result(fields_of(protocol::Message{*status}))
@@ -69,7 +69,7 @@ Result<Json> restart(PrinterClient& printer, const Order& order) {
 
 Result<Json> flush(PrinterClient& printer, const Order& /*order*/) {
     if (!printer.send(Action::flush_fifo)) {
-        return no_answer(printer, Parameter::SM);
+        return not_confirmed(printer);
     }
     static_cast<void>(printer.ask<protocol::MailStatus>(Parameter::SM)); // the first one may be old
     const auto mail = asked<protocol::MailStatus>(printer, Parameter::SM);
@@ -85,7 +85,7 @@ Result<Json> flush(PrinterClient& printer, const Order& /*order*/) {
 Result<Json> stop_at(PrinterClient& printer, const Order& order) {
     const RecordNumber number{static_cast<std::uint32_t>(*order.arguments.number("number"))};
     if (!printer.send(protocol::StopAt{number})) {
-        return no_answer(printer, Parameter::SM);
+        return not_confirmed(printer);
     }
     static_cast<void>(printer.ask<protocol::MailStatus>(Parameter::SM));
     const auto mail = asked<protocol::MailStatus>(printer, Parameter::SM);
@@ -127,7 +127,7 @@ Result<Json> set_counters(PrinterClient& printer, const Order& order) {
         return Failure{FailureKind::usage, "say product, stop_after or both"};
     }
     if (!printer.send(wanted)) {
-        return no_answer(printer, Parameter::CC);
+        return not_confirmed(printer);
     }
     const auto now = asked<protocol::Counters>(printer, Parameter::CC);
     if (!now) {
@@ -139,7 +139,17 @@ Result<Json> set_counters(PrinterClient& printer, const Order& order) {
     return json_result(fields_of(*now));
 }
 
+/// The printer would say nothing, and do nothing.
+Failure unknown_to(const PrinterClient& printer, std::string_view command, std::string_view property) {
+    return {FailureKind::stopped, "firmware of the profile " + to_string(printer.settings().profile) + " knows no " +
+                                      std::string{command} + "; if this one does, say so: " + std::string{property} +
+                                      "=on behind the profile's name"};
+}
+
 Result<Json> limit_counter(PrinterClient& printer, const Order& order) {
+    if (!printer.settings().profile.counter_parameters) {
+        return unknown_to(printer, "=CP", "counter-limits");
+    }
     const std::string limit = order.arguments.text("limit");
     if (limit != "start" && limit != "end") {
         return Failure{FailureKind::usage, "limit must be start or end"};
@@ -155,9 +165,14 @@ Result<Json> reset_counter(PrinterClient& printer, const Order& order) {
                                                 order.arguments.number("start")});
 }
 
+Result<Json> send_output(PrinterClient& printer, const protocol::OutputChange& change) {
+    return printer.settings().profile.output_control ? sent(printer, change)
+                                                     : unknown_to(printer, "=CO", "output-control");
+}
+
 template <bool take>
 Result<Json> control_outputs(PrinterClient& printer, const Order& /*order*/) {
-    return sent(printer, protocol::OutputChange{0, take});
+    return send_output(printer, {0, take});
 }
 
 Result<Json> set_output(PrinterClient& printer, const Order& order) {
@@ -165,8 +180,7 @@ Result<Json> set_output(PrinterClient& printer, const Order& order) {
     if (state != "on" && state != "off") {
         return Failure{FailureKind::usage, "state must be on or off"};
     }
-    return sent(printer,
-                protocol::OutputChange{static_cast<std::uint32_t>(*order.arguments.number("output")), state == "on"});
+    return send_output(printer, {static_cast<std::uint32_t>(*order.arguments.number("output")), state == "on"});
 }
 
 Result<Json> set_clock(PrinterClient& printer, const Order& order) {
@@ -175,7 +189,7 @@ Result<Json> set_clock(PrinterClient& printer, const Order& order) {
         return wanted.error();
     }
     if (!printer.send(*wanted)) {
-        return no_answer(printer, Parameter::DL);
+        return not_confirmed(printer);
     }
     const auto now = asked<protocol::ClockTime>(printer, Parameter::DL);
     if (!now) {
@@ -199,7 +213,7 @@ Result<Json> set_text(PrinterClient& printer, const Order& order) {
         return Failure{FailureKind::usage, "the text has ^ or \\, which firmware without escapes cannot be told"};
     }
     if (!printer.send(wanted)) {
-        return no_answer(printer, Parameter::ET);
+        return not_confirmed(printer);
     }
     constexpr auto longest = std::chrono::milliseconds{500}; // it takes 20 to 150 ms
     constexpr auto look_again = std::chrono::milliseconds{50};

@@ -37,11 +37,18 @@ Result<std::vector<typename Block::Entry>> ask_list(PrinterClient& printer) {
 } // namespace
 
 Failure no_answer(const PrinterClient& printer, Parameter what) {
-    const std::string asked = "?" + std::string{code(what)} + " (" + std::string{description(what)} + ')';
+    return no_answer(printer, "?" + std::string{code(what)} + " (" + std::string{description(what)} + ')');
+}
+
+Failure no_answer(const PrinterClient& printer, std::string_view what) {
+    return {FailureKind::unreachable, printer.silence(what)};
+}
+
+Failure not_confirmed(const PrinterClient& printer) {
     return {FailureKind::unreachable,
-            printer.settings().address + (printer.open() ? ": the printer does not answer " + asked +
-                                                               "; in standby, or with old firmware, it may not"
-                                                         : ": the connection was lost while it was asked " + asked)};
+            printer.settings().address + (printer.open() ? ": the printer has not confirmed the command: nobody knows "
+                                                           "whether it is done. Look before you give it again"
+                                                         : ": the connection was lost while the command was sent")};
 }
 
 Failure not_taken(const std::string& seen) {

@@ -13,6 +13,11 @@ namespace linefeed::printer {
 /// FailureKind::unreachable: the printer is silent, or the connection is lost. In standby most inquiries are not
 /// answered, and old firmware does not know all.
 [[nodiscard]] Failure no_answer(const PrinterClient& printer, protocol::Parameter what);
+[[nodiscard]] Failure no_answer(const PrinterClient& printer, std::string_view what);
+
+/// FailureKind::unreachable: the connection broke while the command was sent, or the printer has not said that it has
+/// arrived as it was sent: nobody knows whether it is done.
+[[nodiscard]] Failure not_confirmed(const PrinterClient& printer);
 
 /// FailureKind::stopped: what was sent has not changed what it should. `seen` = what the printer says instead.
 [[nodiscard]] Failure not_taken(const std::string& seen);

@@ -1,6 +1,7 @@
 // Listing, writing and deleting files of the printer, see file_transfer.hpp.
 #include "printer/file_transfer.hpp"
 
+#include "printer/exchange.hpp"
 #include "printer/look.hpp"
 #include "printer/printer_path.hpp"
 
@@ -152,7 +153,7 @@ Result<std::vector<protocol::DirectoryEntry>> list_files(PrinterClient& printer,
                                                return listing.add(*block) ? Heard::done : Heard::more;
                                            });
     if (!complete) {
-        return Failure{FailureKind::unreachable, printer.settings().address + ": the printer does not answer $RD"};
+        return no_answer(printer, "$RD");
     }
     return listing.entries();
 }

@@ -1,5 +1,6 @@
 #include "printer/job_commands.hpp"
 
+#include "printer/exchange.hpp"
 #include "printer/file_transfer.hpp"
 #include "printer/printer_path.hpp"
 #include "protocol/frame.hpp"
@@ -23,10 +24,6 @@ constexpr auto look_again = std::chrono::milliseconds{50};
 constexpr std::size_t max_line = protocol::max_frame_bytes / 2 - 8;
 constexpr std::size_t max_lines = 100'000;
 
-Failure no_answer(const PrinterClient& printer, const std::string& what) {
-    return {FailureKind::unreachable, printer.settings().address + ": the printer does not answer " + what};
-}
-
 /// The name that `?JL` tells when it is `path`, or after `patience`. Where the job was loaded before, the printer tells
 /// its name at once: so it is given the time that loading takes.
 Result<std::string> wait_for_job(PrinterClient& printer, const std::string& path, Duration patience) {
@@ -35,7 +32,7 @@ Result<std::string> wait_for_job(PrinterClient& printer, const std::string& path
     while (true) {
         const auto job = printer.ask<protocol::JobName>(Parameter::JL);
         if (!job) {
-            return no_answer(printer, "?JL");
+            return no_answer(printer, Parameter::JL);
         }
         if (same_path(job->path, path)) {
             return job->path;
@@ -53,7 +50,7 @@ Result<std::string> wait_for_job(PrinterClient& printer, const std::string& path
 Result<void> check_not_printing(PrinterClient& printer) {
     const auto status = printer.ask<protocol::MachineStatus>(Parameter::RS);
     if (!status) {
-        return no_answer(printer, "?RS");
+        return no_answer(printer, Parameter::RS);
     }
     if (status->machine == protocol::MachineState::printing) {
         return Failure{FailureKind::stopped, printer.settings().address + ": it is print-ready: stop the line first"};
@@ -98,7 +95,7 @@ Result<std::vector<std::string>> read_script(PrinterClient& printer) {
                                            });
     if (!complete) {
         return begun ? Failure{FailureKind::unreachable, printer.settings().address + ": the script ends early"}
-                     : no_answer(printer, "?JB");
+                     : no_answer(printer, Parameter::JB);
     }
     return lines;
 }
@@ -148,7 +145,7 @@ constexpr const char* scripted_job = "EXTERN";
 Result<std::vector<std::string>> script_under_that_name(PrinterClient& printer) {
     const auto job = printer.ask<protocol::JobName>(Parameter::JL);
     if (!job) {
-        return no_answer(printer, "?JL");
+        return no_answer(printer, Parameter::JL);
     }
     return same_path(job->path, scripted_job) ? read_script(printer) : Result<std::vector<std::string>>{};
 }

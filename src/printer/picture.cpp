@@ -2,6 +2,7 @@
 #include "printer/picture.hpp"
 
 #include "base/assert.hpp"
+#include "printer/exchange.hpp"
 
 #include <optional>
 #include <utility>
@@ -30,7 +31,7 @@ Result<WysiwygImage> ask_detail(PrinterClient& printer, std::uint32_t x) {
         return action != nullptr && action->action == protocol::Action::end_of_data ? Heard::done : Heard::ignored;
     });
     if (!complete) {
-        return Failure{FailureKind::unreachable, printer.settings().address + ": the printer does not answer ?GW"};
+        return no_answer(printer, protocol::Parameter::GW);
     }
     auto image = assembly.image();
     if (!image || image->width == 0 || image->height == 0 || image->delivered() == 0) {

@@ -87,7 +87,7 @@ Result<Json> set_parameter(PrinterClient& printer, const Order& order) {
                                                std::to_string(limits.largest)};
     }
     if (!printer.send(PrintParameter{*type, value})) {
-        return no_answer(printer, Parameter::PR);
+        return not_confirmed(printer);
     }
     const auto now = ask_for(printer, *type);
     if (!now) {

@@ -17,7 +17,10 @@ using protocol::Message;
 PrinterClient::PrinterClient(const ClientSettings& settings)
     : settings_(settings)
     , decoder_(settings.profile.escapes)
-    , secured_(settings.endpoints.crc) {}
+    , secured_(settings.endpoints.crc)
+    , line_({.bytes_per_second = settings.endpoints.serial ? link::bytes_per_second(*settings.endpoints.serial) : 0,
+             .crc = true,
+             .answer_takes = settings.reply_timeout}) {}
 
 /// The last command may still be on its way out of a serial port.
 PrinterClient::~PrinterClient() {
@@ -52,6 +55,7 @@ bool PrinterClient::send(protocol::Action action) {
     return deliver(bytes);
 }
 
+/// Nobody listens.
 bool PrinterClient::deliver(const std::string& frame) {
     return secured_ ? exchange(frame, nullptr, settings_.reply_timeout) : write(frame);
 }
@@ -67,6 +71,7 @@ bool PrinterClient::converse(const std::string& bytes, const Listener& listener)
 }
 
 bool PrinterClient::converse(const std::string& bytes, const Listener& listener, Duration reply_timeout) {
+    oddities_.unreadable.clear();
     if (!secured_ || bytes.empty()) {
         return (bytes.empty() || write(bytes)) && listen(listener, reply_timeout);
     }
@@ -75,7 +80,7 @@ bool PrinterClient::converse(const std::string& bytes, const Listener& listener,
         const std::string_view frame = left.substr(0, left.find('\r') + 1);
         left.remove_prefix(frame.size());
         if (left.empty()) {
-            return exchange(frame, &listener, reply_timeout);
+            return exchange(frame, listener, reply_timeout);
         }
         if (!exchange(frame, nullptr, reply_timeout)) {
             return false;
@@ -84,37 +89,61 @@ bool PrinterClient::converse(const std::string& bytes, const Listener& listener,
 }
 
 bool PrinterClient::listen(const Listener& listener, Duration reply_timeout) {
+    // On a serial line a long frame takes longer than any time-out; but what never becomes a frame is no answer.
+    const Duration longest_frame = time_on_line(protocol::max_frame_bytes);
+    auto latest = Clock::now() + reply_timeout + longest_frame;
     auto deadline = Clock::now() + reply_timeout;
     while (open_ && Clock::now() < deadline) {
-        bool prolonged = false;
         const std::string_view bytes = read(deadline);
-        if (hear(bytes, listener, prolonged)) {
+        const bool came = !bytes.empty();
+        const Heard heard = hear(bytes, listener);
+        if (heard == Heard::done) {
             return true;
         }
-        // On a serial line a long frame takes longer than any time-out.
-        if (prolonged || (settings_.endpoints.serial && !bytes.empty())) {
-            deadline = Clock::now() + reply_timeout;
+        if (heard == Heard::more) {
+            latest = Clock::now() + reply_timeout + longest_frame;
+        }
+        if (heard == Heard::more || (settings_.endpoints.serial && came)) {
+            deadline = std::min(Clock::now() + reply_timeout, latest);
         }
     }
     return false;
 }
 
 /// What stands behind the answer is decoded, but nobody is listening any more.
-bool PrinterClient::hear(std::string_view bytes, const Listener& listener, bool& prolonged) {
-    bool done = false;
+PrinterClient::Heard PrinterClient::hear(std::string_view bytes, const Listener& listener) {
+    Heard most = Heard::ignored;
     for (auto result = decoder_.next(bytes); result.index() != 0; result = decoder_.next(bytes)) {
         if (const auto* const damage = std::get_if<protocol::FrameError>(&result)) {
             oddities_.damaged_bytes += damage->bytes;
         } else if (const auto* const frame = std::get_if<protocol::Frame>(&result)) {
             const Message message = message_of(*frame);
-            const bool heeded = !done && (!secured_ || is_for_listener(*frame, message));
-            const Heard heard = heeded ? listener(message, frame->raw) : Heard::ignored;
-            answered_ = answered_ || heard != Heard::ignored;
-            done = done || heard == Heard::done;
-            prolonged = prolonged || heard == Heard::more;
+            const bool listened = listener != nullptr && most != Heard::done;
+            const Heard heard = secured_   ? take_secured(*frame, message, listened ? listener : nullptr)
+                                : listened ? listener(message, frame->raw)
+                                           : Heard::ignored;
+            most = std::max(most, heard);
         }
     }
-    return done;
+    return most;
+}
+
+std::string PrinterClient::silence(std::string_view asked) const {
+    const std::string of = settings_.address + ": the printer does not answer " + std::string{asked};
+    if (!open_) {
+        return settings_.address + ": the connection was lost while it was asked " + std::string{asked};
+    }
+    if (!oddities_.unreadable.empty()) {
+        return settings_.address + ": the answer to " + std::string{asked} + " cannot be read: " + oddities_.unreadable;
+    }
+    if (oddities_.unsecured) {
+        return of + " with CRC32: it is in standby, or its firmware knows no =NR; take crc=on out of its address";
+    }
+    if (oddities_.damaged_bytes > 0) {
+        return of + ", but " + std::to_string(oddities_.damaged_bytes) +
+               " bytes came that are no frame: another baud rate, a noisy line, or another device?";
+    }
+    return of + "; in standby, or with old firmware, it may not";
 }
 
 bool PrinterClient::write(const std::string& bytes) {
@@ -173,6 +202,7 @@ Message PrinterClient::message_of(const protocol::Frame& frame) {
     Message message = protocol::parse_message(frame, settings_.profile.escapes);
     if (const auto* const malformed = std::get_if<protocol::MalformedMessage>(&message)) {
         oddities_.damaged_bytes += malformed->payload.size();
+        oddities_.unreadable = malformed->reason;
     }
     const auto* const action = std::get_if<protocol::ActionMessage>(&message);
     const bool own = action != nullptr &&

@@ -8,6 +8,7 @@
 #include "protocol/frame_decoder.hpp"
 #include "protocol/messages.hpp"
 #include "protocol/profile.hpp"
+#include "protocol/secured_line.hpp"
 
 #include <boost/asio/io_context.hpp>
 
@@ -35,7 +36,9 @@ struct ConversationOddities {
     bool lengths = false;            ///< `!LN`: each frame carries its length
     bool echoes = false;             ///< `!EM`: commands come back
     bool filled = false;             ///< `=FL`: frames are filled with blanks
+    bool unsecured = false;          ///< answers come, but without the CRC32 that was asked for
     std::uint64_t damaged_bytes = 0; ///< that belong to no frame, or to one that cannot be read
+    std::string unreadable{};        ///< why the last answer could not be read; empty = it could
 
     friend bool operator==(const ConversationOddities&, const ConversationOddities&) = default;
 };
@@ -90,6 +93,8 @@ public:
     /// Hears from now on of everything that is sent and that comes.
     void observe(Observer observer) { observer_ = std::move(observer); }
     [[nodiscard]] const ClientSettings& settings() const { return settings_; }
+    /// Why there is no answer to what was asked last, in words: `asked` e.g. "?SM".
+    [[nodiscard]] std::string silence(std::string_view asked) const;
     /// The other side has not closed.
     [[nodiscard]] bool open() const { return open_; }
     [[nodiscard]] const ConversationOddities& oddities() const { return oddities_; }
@@ -101,13 +106,19 @@ private:
     [[nodiscard]] bool deliver(const std::string& frame);
     [[nodiscard]] bool listen(const Listener& listener, Duration reply_timeout);
     // printer_client_secured.cpp
-    [[nodiscard]] bool exchange(std::string_view frame, const Listener* listener, Duration reply_timeout);
-    [[nodiscard]] bool try_exchange(std::string_view frame, const Listener* listener, Duration reply_timeout);
-    [[nodiscard]] bool is_for_listener(const protocol::Frame& frame, const protocol::Message& message);
+    [[nodiscard]] bool exchange(std::string_view frame, const Listener& listener, Duration reply_timeout);
+    [[nodiscard]] bool settle(const Listener& listener);
+    [[nodiscard]] Heard take_secured(const protocol::Frame& frame, const protocol::Message& message,
+                                     const Listener& listener);
+    [[nodiscard]] Heard take_proven(const protocol::Frame& frame, const protocol::Message& message,
+                                    const Listener& listener);
+    [[nodiscard]] Heard take_unannounced(const protocol::Frame& frame, const protocol::Message& message,
+                                         const Listener& listener);
+    void step(protocol::SecuredLine::Step step);
     [[nodiscard]] bool write(const std::string& bytes);
     [[nodiscard]] std::string_view read(Clock::time_point deadline);
-    /// What stands in one read; true when the listener is done.
-    [[nodiscard]] bool hear(std::string_view bytes, const Listener& listener, bool& prolonged);
+    /// What stands in one read: the most that the listener has made of one of its frames.
+    [[nodiscard]] Heard hear(std::string_view bytes, const Listener& listener);
     [[nodiscard]] protocol::Message message_of(const protocol::Frame& frame);
     [[nodiscard]] Duration time_on_line(std::size_t bytes) const;
     void note_filling(std::string_view bytes);
@@ -117,12 +128,12 @@ private:
     link::Channel channel_{context_};
     protocol::FrameDecoder decoder_;
     ConversationOddities oddities_;
-    /// What the printer said of the frame that was announced by its CRC32.
-    enum class Word { none, right, refused };
     bool secured_;
-    Word word_ = Word::none;
+    protocol::SecuredLine line_;
+    bool to_send_ = false;                       ///< what the line announces has to go out
     std::optional<std::uint32_t> announced_crc_; ///< of the next frame from the printer
-    bool answered_ = false;                      ///< the listener has heard something since the frame went out
+    bool secured_once_ = false;                  ///< the printer has shown that it knows CRC32
+    int unannounced_ = 0;                        ///< frames before that
     Observer observer_ = [](bool, std::string_view) {};
     bool open_ = false;
     char last_byte_ = '\0';

@@ -8,92 +8,183 @@
 
 namespace linefeed::printer {
 
+using protocol::Action;
+using protocol::Parameter;
+using protocol::SecuredLine;
+using Kind = SecuredLine::Kind;
+
 namespace {
 
-constexpr int max_tries = 5;
 constexpr std::size_t group_place = 2;
+constexpr std::size_t code_letters = 2;
+constexpr std::string_view power_off = "^0!PF\r";
 
 char group_of(std::string_view frame) {
     return frame.size() > group_place ? frame[group_place] : '\0';
 }
 
-/// Whether the frame may be sent again when nobody knows whether it has arrived. Not `!EQ`, which could meet an error
-/// that nobody has seen; nor a line of a script, of which two are more than one.
+std::string_view code_of(std::string_view frame) {
+    return frame.substr(std::min(frame.size(), group_place + 1), code_letters);
+}
+
+Instant now() {
+    return Instant{std::chrono::steady_clock::now().time_since_epoch()};
+}
+
+/// Files have checks of their own, and are outside of this. In standby the printer knows nothing of it.
+bool goes_bare(std::string_view frame) {
+    return group_of(frame) == '$' || (group_of(frame) == '!' && (code_of(frame) == code(Action::power_on) ||
+                                                                 code_of(frame) == code(Action::restart)));
+}
+
+/// Whether the frame sent twice does the same as sent once. Not `!EQ`, which could meet an error that nobody has seen;
+/// nor a line of a script, or a step of a motor, of which two are more than one.
 bool may_repeat(std::string_view frame) {
-    return group_of(frame) != '*' && !frame.ends_with("!EQ\r");
+    constexpr std::array once_actions{Action::acknowledge_errors, Action::start_print, Action::motor_open,
+                                      Action::motor_close, Action::reset_counters};
+    constexpr std::array once_parameters{Parameter::CC, Parameter::MR, Parameter::RC};
+    const auto is = [letters = code_of(frame)](auto command) { return code(command) == letters; };
+    switch (group_of(frame)) {
+    case '!':
+        return std::ranges::none_of(once_actions, is);
+    case '=':
+        return std::ranges::none_of(once_parameters, is);
+    default:
+        return group_of(frame) == '?';
+    }
+}
+
+SecuredLine::Frame secured_frame(std::string_view frame) {
+    const auto what = group_of(frame) == '?' ? protocol::parameter_from_code(code_of(frame)) : std::nullopt;
+    const Kind kind = what ? Kind::inquiry : may_repeat(frame) ? Kind::command : Kind::once;
+    return {.kind = kind, .what = what.value_or(Parameter::SM), .bytes = std::string{frame}};
 }
 
 } // namespace
 
 /// Without a listener it is done when the printer says that the frame was right.
-bool PrinterClient::exchange(std::string_view frame, const Listener* listener, Duration reply_timeout) {
-    if (group_of(frame) == '$') { // has checks of its own, and is outside of this
-        return write(std::string{frame}) && (listener == nullptr || listen(*listener, reply_timeout));
+bool PrinterClient::exchange(std::string_view frame, const Listener& listener, Duration reply_timeout) {
+    if (goes_bare(frame)) {
+        return write(std::string{frame}) && (listener == nullptr || listen(listener, reply_timeout));
     }
-    for (int tries = 0; tries < max_tries && open_; ++tries) {
-        if (try_exchange(frame, listener, reply_timeout)) {
-            return true;
-        }
-        if (answered_ || (word_ != Word::refused && !may_repeat(frame))) {
-            return false;
-        }
+    line_.add(secured_frame(frame));
+    static_cast<void>(line_.begin());
+    to_send_ = true;
+    announced_crc_.reset();
+    bool done = false;
+    bool answered = false;
+    const bool proven = settle([&](const protocol::Message& message, std::string_view raw) {
+        const Heard heard = listener == nullptr || done ? Heard::ignored : listener(message, raw);
+        done = done || heard == Heard::done;
+        answered = answered || heard != Heard::ignored;
+        return heard;
+    });
+    if (frame == power_off) {
+        secured_once_ = false; // in standby it knows nothing of it
+        unannounced_ = 0;
     }
-    return false;
+    if (done || listener == nullptr) {
+        return done || proven;
+    }
+    return (proven || answered) && listen(listener, reply_timeout);
 }
 
-bool PrinterClient::try_exchange(std::string_view frame, const Listener* listener, Duration reply_timeout) {
-    constexpr Duration word_within = std::chrono::milliseconds{500};
-    word_ = Word::none;
-    answered_ = false;
-    announced_crc_.reset();
-    const std::uint32_t crc = protocol::crc32(frame.substr(0, frame.size() - 1));
-    if (!write(frame_of(protocol::NextCrc{crc}).append(frame))) {
-        return false;
-    }
-    const auto begun = Clock::now();
-    auto deadline = begun + std::min(reply_timeout, word_within) + time_on_line(frame.size());
-    const Listener nobody = [](const protocol::Message&, std::string_view) { return Heard::ignored; };
-    while (open_ && Clock::now() < deadline) {
-        const bool was_right = word_ == Word::right;
-        bool prolonged = false;
-        const std::string_view bytes = read(deadline);
-        if (hear(bytes, listener == nullptr ? nobody : *listener, prolonged)) {
-            return true;
+/// Until the frame that is under way is settled, or nothing comes for a reply time-out: true if the printer has shown
+/// that it has arrived.
+bool PrinterClient::settle(const Listener& listener) {
+    constexpr auto at_least = std::chrono::milliseconds{20};
+    const Duration longest_frame = time_on_line(protocol::max_frame_bytes);
+    bool proven = true;
+    const auto latest = Clock::now() + longest_frame + settings_.reply_timeout;
+    auto heard_at = Clock::now() + time_on_line(line_.current().bytes.size());
+    while (open_ && line_.busy() && Clock::now() < heard_at + settings_.reply_timeout) {
+        if (std::exchange(to_send_, false)) {
+            if (!write(std::string{line_.announced(now())})) {
+                break;
+            }
         }
-        if (word_ == Word::refused || (word_ == Word::right && listener == nullptr)) {
-            return word_ == Word::right;
-        }
-        if (prolonged || (!was_right && word_ == Word::right) || (settings_.endpoints.serial && !bytes.empty())) {
-            deadline = Clock::now() + reply_timeout;
+        const auto deadline = Clock::time_point{line_.deadline()->time_since_epoch()};
+        const std::string_view bytes = read(std::max(deadline, Clock::now() + at_least));
+        heard_at = bytes.empty() ? heard_at : Clock::now();
+        const bool goes_on = settings_.endpoints.serial && !bytes.empty() && Clock::now() < latest;
+        static_cast<void>(hear(bytes, listener));
+        if (!goes_on && !to_send_) {
+            step(line_.on_time(now()));
         }
     }
-    return false;
+    if (line_.busy()) {
+        line_.give_up();
+        proven = false;
+    }
+    return proven && line_.proven();
+}
+
+void PrinterClient::step(SecuredLine::Step step) {
+    to_send_ = to_send_ || step == SecuredLine::Step::send;
 }
 
 /// Takes what belongs to the transmission itself, and drops what was not announced or is damaged.
-bool PrinterClient::is_for_listener(const protocol::Frame& frame, const protocol::Message& message) {
+PrinterClient::Heard PrinterClient::take_secured(const protocol::Frame& frame, const protocol::Message& message,
+                                                 const Listener& listener) {
     if (frame.group == protocol::Group::file) {
-        return true;
+        return listener == nullptr ? Heard::ignored : listener(message, frame.raw);
     }
     if (const auto* const next = std::get_if<protocol::NextCrc>(&message)) {
         announced_crc_ = next->crc;
-        return false;
+        return Heard::ignored;
     }
     const auto announced = std::exchange(announced_crc_, std::nullopt);
-    if (std::holds_alternative<protocol::CrcFailed>(message)) {
-        word_ = Word::refused;
-        return false;
+    const auto* const action = std::get_if<protocol::ActionMessage>(&message);
+    if (action != nullptr && action->action == Action::crc_ok) {
+        secured_once_ = true;
+        step(line_.on_right(now()));
+        return Heard::ignored;
     }
-    if (const auto* const action = std::get_if<protocol::ActionMessage>(&message);
-        action != nullptr && action->action == protocol::Action::crc_ok) {
-        word_ = Word::right;
-        return false;
+    if (std::holds_alternative<protocol::CrcFailed>(message)) {
+        secured_once_ = true;
+        step(line_.on_refused());
+        return Heard::ignored;
     }
     if (announced && protocol::is_announced_by(frame.raw, *announced)) {
-        return true;
+        secured_once_ = true;
+        oddities_.unsecured = false;
+        return take_proven(frame, message, listener);
     }
-    oddities_.damaged_bytes += frame.raw.size();
-    return false;
+    line_.on_echo(frame.raw);
+    oddities_.damaged_bytes += announced ? frame.raw.size() : 0;
+    return announced || secured_once_ ? Heard::ignored : take_unannounced(frame, message, listener);
+}
+
+PrinterClient::Heard PrinterClient::take_proven(const protocol::Frame& frame, const protocol::Message& message,
+                                                const Listener& listener) {
+    line_.on_echo(frame.raw);
+    if (line_.syncing()) {
+        const auto what = protocol::parameter_from_code(code_of(frame.raw));
+        step(what ? line_.on_answer(*what, now()) : SecuredLine::Step::wait);
+        return Heard::ignored;
+    }
+    const Heard heard = listener == nullptr ? Heard::ignored : listener(message, frame.raw);
+    if (heard != Heard::ignored && line_.busy()) {
+        const bool inquiry = line_.current().kind == Kind::inquiry;
+        step(inquiry ? line_.on_answer(line_.current().what, now()) : line_.on_right(now()));
+    }
+    return heard;
+}
+
+/// A printer in standby answers without CRC32 (protocol, section 1), and so does one that does not know it. An answer
+/// whose announcement got lost looks the same, but not several times.
+PrinterClient::Heard PrinterClient::take_unannounced(const protocol::Frame& frame, const protocol::Message& message,
+                                                     const Listener& listener) {
+    constexpr int enough = 3;
+    const auto* const machine = std::get_if<protocol::MachineStatus>(&message);
+    const bool standby = machine != nullptr && machine->machine == protocol::MachineState::standby;
+    const Heard heard = standby && listener != nullptr ? listener(message, frame.raw) : Heard::ignored;
+    unannounced_ += standby ? 0 : 1;
+    oddities_.unsecured = unannounced_ >= enough;
+    if (heard == Heard::done || oddities_.unsecured) {
+        line_.clear();
+    }
+    return heard;
 }
 
 } // namespace linefeed::printer

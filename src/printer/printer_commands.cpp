@@ -1,5 +1,7 @@
 #include "printer/printer_commands.hpp"
 
+#include "printer/exchange.hpp"
+
 #include <algorithm>
 #include <string>
 
@@ -19,10 +21,6 @@ bool is(const PrinterError& error, std::uint32_t number) {
     return !error.none() && (error.code() == number || error.code_without_bit_24() == number);
 }
 
-Failure no_answer(const ClientSettings& settings) {
-    return {FailureKind::unreachable, settings.address + ": the printer does not answer"};
-}
-
 } // namespace
 
 Result<PrinterError> acknowledge(const ClientSettings& settings, std::uint32_t error) {
@@ -36,7 +34,7 @@ Result<PrinterError> acknowledge(const ClientSettings& settings, std::uint32_t e
 Result<PrinterError> acknowledge(PrinterClient& printer, std::uint32_t error) {
     auto machine = printer.ask<MachineStatus>(Parameter::RS);
     if (!machine) {
-        return no_answer(printer.settings());
+        return no_answer(printer, Parameter::RS);
     }
     if (!is(machine->error, error)) {
         return Failure{FailureKind::stopped, "error " + std::to_string(error) +
@@ -53,7 +51,7 @@ Result<PrinterError> acknowledge(PrinterClient& printer, std::uint32_t error) {
         std::this_thread::sleep_for(look_again);
         machine = printer.ask<MachineStatus>(Parameter::RS);
     }
-    return machine ? Result<PrinterError>{machine->error} : Result<PrinterError>{no_answer(printer.settings())};
+    return machine ? Result<PrinterError>{machine->error} : Result<PrinterError>{no_answer(printer, Parameter::RS)};
 }
 
 PanelHold::PanelHold(const ClientSettings& settings, Duration repeat)
@@ -126,7 +124,7 @@ Result<void> PanelHold::suspend() {
         }
     }
     held_.store(false, std::memory_order_relaxed);
-    return no_answer(settings_);
+    return no_answer(*client_, Parameter::RS);
 }
 
 void PanelHold::resume() {

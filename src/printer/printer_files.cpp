@@ -1,14 +1,14 @@
 #include "printer/printer_files.hpp"
 
+#include "printer/exchange.hpp"
+
 namespace linefeed::printer {
 
 using protocol::Parameter;
 
 Result<protocol::VersionInfo> ConversationFiles::identity() {
     const auto versions = printer_.ask<protocol::VersionInfo>(Parameter::VS);
-    return versions ? Result<protocol::VersionInfo>{*versions}
-                    : Failure{FailureKind::unreachable,
-                              printer_.settings().address + ": the printer does not answer ?VS; in standby it cannot"};
+    return versions ? Result<protocol::VersionInfo>{*versions} : no_answer(printer_, Parameter::VS);
 }
 
 Result<std::string> ConversationFiles::loaded_job() {

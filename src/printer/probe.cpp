@@ -29,6 +29,7 @@ Result<protocol::MachineStatus> ask_still(PrinterClient& printer) {
         return machine;
     }
     switch (machine->machine) {
+    case MachineState::unknown:
     case MachineState::standby:
     case MachineState::initialising:
         return not_now(printer, "it is in " + std::string{to_string(machine->machine)} +
@@ -108,7 +109,8 @@ Json yes_or_no(const std::optional<bool>& value) {
     return value ? Json(*value) : Json{};
 }
 
-Json firmware_json(const std::optional<protocol::VersionInfo>& version) {
+/// With what the printer's owner has said.
+Json firmware_json(const std::optional<protocol::VersionInfo>& version, const protocol::OwnProperties& own) {
     if (!version) {
         return {{"profile", nullptr},
                 {"note", "the printer does not answer ?VS: name its profile in the settings, or with --profile"}};
@@ -116,21 +118,22 @@ Json firmware_json(const std::optional<protocol::VersionInfo>& version) {
     Json json{{"type", protocol::printable(version->type)},
               {"firmware", protocol::printable(version->firmware)},
               {"serial_number", protocol::printable(version->serial_number)}};
-    const auto profile = protocol::profile_for(version->type, version->firmware);
-    if (!profile) {
+    const auto told = protocol::profile_for(version->type, version->firmware);
+    if (!told) {
         json["profile"] = nullptr;
         json["note"] = "no profile is known for this type and firmware: name one in the settings, or with --profile";
         return json;
     }
-    json["profile"] = profile->name;
-    json["escapes"] = profile->escapes == protocol::EscapeMode::backslash;
-    json["speed_unit"] = profile->speed_in_metres ? "m/min" : "dm/min";
-    json["record_properties"] = profile->record_properties;
-    json["output_control"] = profile->output_control;
-    json["counter_limits"] = profile->counter_parameters;
-    json["graphic_height"] = profile->graphic_height;
-    json["inputs"] = profile->configured_inputs();
-    json["outputs"] = profile->outputs();
+    const protocol::Profile profile = protocol::with_own_properties(*told, own);
+    json["profile"] = to_string(profile);
+    json["escapes"] = profile.escapes == protocol::EscapeMode::backslash;
+    json["speed_unit"] = profile.speed_in_metres ? "m/min" : "dm/min";
+    json["record_properties"] = profile.record_properties;
+    json["output_control"] = profile.output_control;
+    json["counter_limits"] = profile.counter_parameters;
+    json["graphic_height"] = profile.graphic_height;
+    json["inputs"] = profile.configured_inputs();
+    json["outputs"] = profile.outputs();
     return json;
 }
 
@@ -146,7 +149,7 @@ Result<Json> probe(PrinterClient& printer, const Order& /*order*/) {
     if (mailing->entries > 0) {
         return not_now(printer, "records lie in its FIFO: print or flush them first, then probe it");
     }
-    Json json = firmware_json(printer.ask<protocol::VersionInfo>(Parameter::VS));
+    Json json = firmware_json(printer.ask<protocol::VersionInfo>(Parameter::VS), printer.settings().profile.own);
     const auto keeps = keeps_stop_at(printer, mailing->stop_at);
     if (!keeps) {
         return keeps.error();

@@ -196,8 +196,7 @@ Result<Json> query(PrinterClient& printer, const Order& order) {
         return heard;
     });
     if (answers.empty()) {
-        return Failure{FailureKind::unreachable, printer.settings().address + ": the printer does not answer ?" + code +
-                                                     "; in standby, or with other firmware, it may not"};
+        return no_answer(printer, '?' + code);
     }
     return json_result({{"inquiry", '?' + code}, {"complete", complete}, {"answers", std::move(answers)}});
 }

@@ -1,5 +1,6 @@
 #include "printer/tasks.hpp"
 
+#include "printer/exchange.hpp"
 #include "printer/look.hpp"
 #include "printer/printer_client.hpp"
 
@@ -7,6 +8,8 @@
 #include <array>
 
 namespace linefeed::printer {
+
+using protocol::Action;
 
 namespace {
 
@@ -25,15 +28,24 @@ bool may_be_done_unheard(const Task& task) {
     });
 }
 
+/// What would spoil a job that prints, whoever has started it.
+bool needs_standing_line(const Task& task, Danger danger) {
+    constexpr std::array spoiling{Action::nozzle_close, Action::motor_close, Action::reload_fonts};
+    const auto spoils = [&](const CommandId& used) {
+        return used.group == protocol::Group::action &&
+               std::ranges::any_of(spoiling, [&](Action action) { return used.code == code(action); });
+    };
+    return danger == Danger::destructive || std::ranges::any_of(task.uses, spoils);
+}
+
 /// Asks the machine itself.
 Result<void> check_not_printing(const Task& task, PrinterClient& printer) {
     const auto status = ask_status(printer);
     if (!status) {
         return may_be_done_unheard(task) && printer.open()
                    ? Result<void>{}
-                   : Failure{FailureKind::unreachable, printer.settings().address +
-                                                           ": the printer does not answer ?RS, and nobody knows "
-                                                           "whether it prints: nothing is done"};
+                   : Failure{FailureKind::unreachable, no_answer(printer, protocol::Parameter::RS).message +
+                                                           "; nobody knows whether it prints: nothing is done"};
     }
     if (status->machine == protocol::MachineState::printing) {
         return Failure{FailureKind::stopped, printer.settings().address +
@@ -87,7 +99,7 @@ Result<Json> carry_out(const Task& task, PrinterClient& printer, const Order& or
     if (!danger) {
         return danger.error();
     }
-    if (*danger == Danger::destructive) {
+    if (needs_standing_line(task, *danger)) {
         if (auto checked = check_not_printing(task, printer); !checked) {
             return checked.error();
         }

@@ -14,11 +14,11 @@ constexpr std::size_t answer_bytes = 36; ///< a long `=SM`
 /// What the kernels and the printer take besides the bytes, for each turn.
 constexpr Duration turn = std::chrono::milliseconds{2};
 
-Duration record_time(const LineSettings& line, std::size_t record_bytes) {
+Duration record_time(const protocol::LineSettings& line, std::size_t record_bytes) {
     return line.crc ? line.time_of(announcement_bytes + record_bytes + word_bytes) + turn : line.time_of(record_bytes);
 }
 
-Duration inquiry_time(const LineSettings& line) {
+Duration inquiry_time(const protocol::LineSettings& line) {
     const std::size_t secured = line.crc ? 2 * announcement_bytes + word_bytes : 0;
     return line.time_of(inquiry_bytes + answer_bytes + secured) + turn;
 }
@@ -31,7 +31,7 @@ RecordCount records_in(Duration time, Duration each) {
 
 } // namespace
 
-double records_per_second(const LineSettings& line, std::size_t record_bytes) {
+double records_per_second(const protocol::LineSettings& line, std::size_t record_bytes) {
     if (line.bytes_per_second <= 0) {
         return std::numeric_limits<double>::infinity();
     }
@@ -63,7 +63,7 @@ void fit_to_line(SessionSettings& settings, std::size_t record_bytes) {
     feeder.retry_interval = std::max(feeder.retry_interval, 2 * inquiry);
 
     const Duration patience =
-        answers_waited_for * inquiry + (settings.line.crc ? SecuredLine::repeats_take() : Duration::zero());
+        answers_waited_for * inquiry + (settings.line.crc ? protocol::SecuredLine::repeats_take() : Duration::zero());
     feeder.flush_timeout += patience;
     feeder.verify_timeout += patience + fill_takes + 2 * record;
     feeder.start_timeout += patience;

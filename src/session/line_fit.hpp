@@ -9,7 +9,7 @@ namespace linefeed::session {
 
 /// How many records of so many bytes each, from `^` to CR, the line carries in a second, when nothing else is to be
 /// said. Infinite where bytes need no counting.
-[[nodiscard]] double records_per_second(const LineSettings& line, std::size_t record_bytes);
+[[nodiscard]] double records_per_second(const protocol::LineSettings& line, std::size_t record_bytes);
 
 /// Sets beat, blocks and time-outs to what `settings.line` can carry, for records of so many bytes on average. Changes
 /// nothing where bytes need no counting.

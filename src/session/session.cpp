@@ -60,6 +60,11 @@ bool may_be_answer(const protocol::Frame& frame) {
     }
 }
 
+bool is_unknown_state(const protocol::Message& message) {
+    const auto* const status = std::get_if<protocol::MachineStatus>(&message);
+    return status != nullptr && status->machine == protocol::MachineState::unknown;
+}
+
 } // namespace
 
 void Session::take_damage(std::uint64_t bytes, Instant now) {
@@ -90,6 +95,8 @@ void Session::take_unsecured(const protocol::Frame& frame, Instant now, Actions&
     const protocol::Message message = protocol::parse_message(frame, settings_.escapes);
     if (const auto* malformed = std::get_if<protocol::MalformedMessage>(&message)) {
         statistics_.bytes_damaged += malformed->payload.size();
+    } else if (is_unknown_state(message) && feeder_.phase() != feeder::Phase::identifying) {
+        ++statistics_.frames_unexpected; // nobody knows whether it prints: the inquiry is as good as lost
     } else if (!take_answer(message, now, actions)) {
         ++statistics_.frames_unexpected;
     }

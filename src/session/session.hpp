@@ -8,10 +8,10 @@
 #include "feeder/feeder.hpp"
 #include "protocol/frame_decoder.hpp"
 #include "protocol/messages.hpp"
+#include "protocol/secured_line.hpp"
 #include "session/frame_observer.hpp"
 #include "session/outbox.hpp"
 #include "session/page_window.hpp"
-#include "session/secured_line.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -57,7 +57,7 @@ struct SessionSettings {
     std::vector<protocol::Charset> charsets{protocol::Charset::latin1};
     /// An inquiry unanswered for this long is lost; a printer from which nothing came for as long is silent.
     Duration reply_timeout = std::chrono::seconds{2};
-    LineSettings line;
+    protocol::LineSettings line;
     /// How long the last commands (`!ST`, `!EQ`) may take to be written before the link is closed all the same.
     Duration farewell_timeout = std::chrono::seconds{1};
 };
@@ -115,7 +115,8 @@ private:
     // session_secured.cpp: with CRC32
     void take_secured(const protocol::Frame& frame, Instant now, feeder::Actions& actions);
     void take_proven(const protocol::Frame& frame, Instant now, feeder::Actions& actions);
-    void settle_frame(SecuredLine::Step step, Instant now, feeder::Actions& actions);
+    void take_unannounced(const protocol::Frame& frame, Instant now, feeder::Actions& actions);
+    void settle_frame(protocol::SecuredLine::Step step, Instant now, feeder::Actions& actions);
     void begin_frame(Instant now);
     void send_announced(Instant now);
     [[nodiscard]] bool take_answer(const protocol::Message& message, Instant now, feeder::Actions& actions);
@@ -125,7 +126,9 @@ private:
     void time_out(protocol::Parameter what, Instant now, feeder::Actions& actions);
     void carry_out(const feeder::Actions& actions, Instant now, Effects& out);
     void carry_out(const feeder::Action& action, Instant now, Effects& out);
-    void send_command(SecuredLine::Kind kind, Instant now, protocol::Parameter what = protocol::Parameter::SM);
+    void send_command(protocol::SecuredLine::Kind kind, Instant now,
+                      protocol::Parameter what = protocol::Parameter::SM);
+    void give_inquiry_up(Instant now);
     void send_records(RecordRange records, Instant now);
     void stage_records(RecordRange records, Instant now);
     void stage_command(std::string_view bytes, Instant now);
@@ -145,8 +148,10 @@ private:
     Outbox outbox_;
     std::string command_; ///< the one that is being made
     PageWindow pages_;
-    SecuredLine secured_;
+    protocol::SecuredLine secured_;
     std::optional<std::uint32_t> announced_crc_;      ///< of the next frame from the printer
+    bool secured_once_ = false;                       ///< the printer has shown that it knows CRC32
+    int unannounced_ = 0;                             ///< answers before that
     Instant line_free_at_{};                          ///< all that was sent has gone over the line by then
     std::optional<RecordsWritten> staged_records_;    ///< in the outbox, for the next write
     std::optional<RecordsWritten> records_under_way_; ///< with the write under way

@@ -11,6 +11,7 @@
 namespace linefeed::session {
 
 using feeder::Actions;
+using protocol::SecuredLine;
 
 namespace {
 
@@ -47,6 +48,7 @@ void Session::carry_out(const feeder::Action& action, Instant now, Effects& out)
         void operator()(const feeder::Command& command) const {
             if (command.what == protocol::Action::stop_print) {
                 session.secured_.drop_records();
+                session.give_inquiry_up(now);
             }
             // Never a blind `!EQ`: repeated, it could meet an error that nobody has seen.
             const bool once = command.what == protocol::Action::acknowledge_errors;
@@ -77,6 +79,19 @@ void Session::carry_out(const feeder::Action& action, Instant now, Effects& out)
         }
     };
     std::visit(Visitor{*this, now, out}, action);
+}
+
+/// A stop does not wait until somebody answers.
+void Session::give_inquiry_up(Instant now) {
+    if (!secured_.syncing() || secured_.current().kind != SecuredLine::Kind::inquiry) {
+        return;
+    }
+    secured_.give_up();
+    for (Inquiry& inquiry : inquiries_) {
+        if (inquiry.what == secured_.current().what) {
+            inquiry.deadline = now; // on_time() tells the feeder
+        }
+    }
 }
 
 void Session::send_command(SecuredLine::Kind kind, Instant now, protocol::Parameter what) {

@@ -10,6 +10,7 @@ namespace linefeed::session {
 using feeder::Actions;
 using protocol::Group;
 using protocol::Parameter;
+using protocol::SecuredLine;
 
 namespace {
 
@@ -20,11 +21,11 @@ bool is_parameter(const protocol::Frame& frame, Parameter what) {
 /// `!OK`, also with one byte damaged: of a frame that it did not check the printer says nothing, and `=FC` is longer.
 /// Taken for right wrongly, a refused record is missing, and the printer stops at the gap.
 bool is_right(const protocol::Frame& frame) {
-    if (frame.payload.size() != 2) {
+    const std::string_view word = frame.payload.substr(0, frame.payload.find_last_not_of(' ') + 1);
+    if (word.size() != 2) {
         return false;
     }
-    const int differing =
-        (frame.group != Group::action ? 1 : 0) + (frame.payload[0] != 'O' ? 1 : 0) + (frame.payload[1] != 'K' ? 1 : 0);
+    const int differing = (frame.group != Group::action ? 1 : 0) + (word[0] != 'O' ? 1 : 0) + (word[1] != 'K' ? 1 : 0);
     return differing <= 1;
 }
 
@@ -39,14 +40,36 @@ void Session::take_secured(const protocol::Frame& frame, Instant now, Actions& a
     }
     const auto announced = std::exchange(announced_crc_, std::nullopt);
     if (is_right(frame)) {
-        settle_frame(secured_.on_right(), now, actions);
+        secured_once_ = true;
+        settle_frame(secured_.on_right(now), now, actions);
     } else if (is_parameter(frame, Parameter::FC)) {
         settle_frame(secured_.on_refused(), now, actions);
     } else if (announced && protocol::is_announced_by(frame.raw, *announced)) {
+        secured_once_ = true;
         take_proven(frame, now, actions);
     } else {
         secured_.on_echo(frame.raw);
         ++statistics_.frames_unexpected;
+        if (!announced && !secured_once_) {
+            take_unannounced(frame, now, actions);
+        }
+    }
+}
+
+/// A printer in standby answers without CRC32 (protocol, section 1), and so does one that does not know it. An answer
+/// whose announcement got lost looks the same, but not several times.
+void Session::take_unannounced(const protocol::Frame& frame, Instant now, Actions& actions) {
+    constexpr int enough = 3;
+    const auto what = protocol::parameter_from_code(frame.payload.substr(0, 2));
+    if (frame.group != Group::parameter || !what) {
+        return;
+    }
+    const protocol::Message message = protocol::parse_message(frame, settings_.escapes);
+    const auto* const machine = std::get_if<protocol::MachineStatus>(&message);
+    if (machine != nullptr && machine->machine == protocol::MachineState::standby && answered(Parameter::RS)) {
+        feeder_.on_machine_status(*machine, now, actions);
+    } else if (secured_.is(*what) && ++unannounced_ == enough) {
+        feeder_.on_not_secured(actions);
     }
 }
 
@@ -54,7 +77,7 @@ void Session::take_secured(const protocol::Frame& frame, Instant now, Actions& a
 void Session::take_proven(const protocol::Frame& frame, Instant now, Actions& actions) {
     secured_.on_echo(frame.raw);
     const auto what = protocol::parameter_from_code(frame.payload.substr(0, 2));
-    const SecuredLine::Step step = what ? secured_.on_answer(*what) : SecuredLine::Step::wait;
+    const SecuredLine::Step step = what ? secured_.on_answer(*what, now) : SecuredLine::Step::wait;
     if (step == SecuredLine::Step::next) {
         take_unsecured(frame, now, actions);
         if (answered(*what)) { // it cannot be read
@@ -67,7 +90,11 @@ void Session::take_proven(const protocol::Frame& frame, Instant now, Actions& ac
 void Session::settle_frame(SecuredLine::Step step, Instant now, Actions& actions) {
     switch (step) {
     case SecuredLine::Step::wait:
+        return;
     case SecuredLine::Step::next: // flush() begins with it
+        if (secured_.current().kind == SecuredLine::Kind::record) {
+            feeder_.on_proven_record(now);
+        }
         return;
     case SecuredLine::Step::send:
         send_announced(now);

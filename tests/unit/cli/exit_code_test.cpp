@@ -43,7 +43,7 @@ TEST(ExitCode, shouldBeZeroOnlyWhenNothingIsLeftToPrint) {
 }
 
 TEST(ExitCode, shouldCallASilentPrinterUnreachableOnlyBeforeTheFirstRecord) {
-    for (const OutcomeCode code : {OutcomeCode::no_answer, OutcomeCode::link_lost}) {
+    for (const OutcomeCode code : {OutcomeCode::no_answer, OutcomeCode::not_secured, OutcomeCode::link_lost}) {
         EXPECT_EQ(code_of(code, false), ExitCode::unreachable) << to_string(code);
         EXPECT_EQ(code_of(code, true), ExitCode::stopped) << to_string(code);
     }

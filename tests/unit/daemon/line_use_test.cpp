@@ -53,12 +53,13 @@ TEST(LineUse, shouldSayWhatASerialLineCarries) {
 
 TEST(LineUse, shouldSayWhereASerialLineCarriesTooLittle) {
     const auto slow = address("serial:///dev/ttyUSB0?baud=9600");
-    EXPECT_EQ(shortfall_words(slow, 40, 19), "");
-    EXPECT_THAT(shortfall_words(slow, 40, 20),
-                HasSubstr("to bring 20 products a second, and the serial line carries about 19:"));
-    EXPECT_THAT(shortfall_words(address("serial:///dev/ttyUSB0?baud=1200"), 2000, 1),
+    EXPECT_FALSE(shortfall(slow, 40, 19));
+    EXPECT_EQ(shortfall(slow, 40, 20)->words, "the conveyor is to bring 20 products a second, and the serial line "
+                                              "carries about 19: the printer will run dry and stop");
+    EXPECT_THAT(shortfall(slow, 40, 20)->advice, HasSubstr("raise the baud rate"));
+    EXPECT_THAT(shortfall(address("serial:///dev/ttyUSB0?baud=1200"), 2000, 1)->words,
                 HasSubstr("carries less than 1:"));
-    EXPECT_EQ(shortfall_words(address("tcp://printer"), 40, 10'000), "");
+    EXPECT_FALSE(shortfall(address("tcp://printer"), 40, 10'000));
 }
 
 TEST(NoisePatience, shouldChangeNothingAfterAnyOtherRun) {

@@ -92,7 +92,11 @@ TEST_F(PreflightTest, shouldStopAtAPrinterThatCannotBeReached) {
 TEST_F(PreflightTest, shouldTellSilenceFromAnotherLanguageAndFromABreak) {
     facts_ = {};
     EXPECT_THAT(finding("reachable"), HasSubstr("problem: it takes the connection, but does not answer"));
-    facts_.oddities.damaged_bytes = 40;
+    facts_.oddities.unsecured = true;
+    EXPECT_THAT(finding("reachable"), HasSubstr("problem: the printer answers, but without CRC32"));
+    facts_.oddities = {.damaged_bytes = 40, .unreadable = "=RS: parameter 2 is not a machine state: \"x\""};
+    EXPECT_THAT(finding("reachable"), HasSubstr("problem: the printer's answer cannot be read: =RS: parameter 2"));
+    facts_.oddities.unreadable.clear();
     EXPECT_THAT(finding("reachable"), HasSubstr("problem: something answers, but not in the printer's language"));
     facts_ = healthy();
     facts_.broke_off = true;
@@ -319,10 +323,10 @@ TEST_F(PreflightTest, shouldNoticeAStopOfTheProductCounter) {
 }
 
 TEST_F(PreflightTest, shouldNoticeWhatOthersHaveLeftOn) {
-    facts_.oddities = {true, true, true, 9};
+    facts_.oddities = {.lengths = true, .echoes = true, .filled = true};
     EXPECT_THAT(finding("modes"), HasSubstr("warning: another program has left on: lengths (!LN), echo (!EM), filled "
                                             "blocks (=FL) - "));
-    facts_.oddities = {false, false, false, 9};
+    facts_.oddities = {.damaged_bytes = 9};
     EXPECT_THAT(finding("modes"), HasSubstr("warning: 9 bytes were no frames"));
     facts_.second_connection = false;
     EXPECT_THAT(finding("connections"), HasSubstr("warning: "));

@@ -103,9 +103,10 @@ constexpr std::array all_codes{
     OutcomeCode::records_not_taken, OutcomeCode::did_not_start,
     OutcomeCode::did_not_stop,      OutcomeCode::impossible_report,
     OutcomeCode::printer_restarted, OutcomeCode::no_answer,
-    OutcomeCode::link_lost,         OutcomeCode::unreachable,
-    OutcomeCode::records_in_doubt,  OutcomeCode::storage_failed,
-    OutcomeCode::ran_dry,           OutcomeCode::line_noise,
+    OutcomeCode::not_secured,       OutcomeCode::link_lost,
+    OutcomeCode::unreachable,       OutcomeCode::records_in_doubt,
+    OutcomeCode::storage_failed,    OutcomeCode::ran_dry,
+    OutcomeCode::line_noise,
 };
 
 TEST(Outcome, shouldHaveANameAndWordsForEveryCode) {
@@ -131,8 +132,9 @@ TEST(Outcome, shouldNameTheCauseOfABreakInTheNumbers) {
 TEST(Outcome, shouldSayWhatToDoInEveryStateThatDoesNotAllowAStart) {
     std::set<std::string> words;
     for (const auto state :
-         {protocol::MachineState::standby, protocol::MachineState::initialising, protocol::MachineState::service,
-          protocol::MachineState::ready, protocol::MachineState::ready_to_print, protocol::MachineState::printing}) {
+         {protocol::MachineState::unknown, protocol::MachineState::standby, protocol::MachineState::initialising,
+          protocol::MachineState::service, protocol::MachineState::ready, protocol::MachineState::ready_to_print,
+          protocol::MachineState::printing}) {
         const std::string described = describe(Outcome{OutcomeCode::not_ready, state, {}, false});
         EXPECT_NE(described.find(protocol::to_string(state)), std::string::npos);
         EXPECT_TRUE(words.insert(described).second);

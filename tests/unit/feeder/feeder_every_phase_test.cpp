@@ -224,6 +224,27 @@ TEST(FeederEveryPhase, shouldGiveUpWhenAnAnswerIsLostAgainAndAgain) {
     story.expect("!ST; " + ended(OutcomeCode::no_answer));
 }
 
+/// A digit may be damaged, so a state that the manual does not name is asked about again before it is believed.
+TEST(FeederEveryPhase, shouldBelieveAStateThatNobodyKnowsOnlyWhenItStays) {
+    Story story = reach(Phase::identifying);
+    story.take();
+    for (int i = 0; i < 3; ++i) {
+        story.rs(State::unknown);
+        story.expect("?RS");
+    }
+    story.rs(State::unknown);
+    story.expect(ended(OutcomeCode::not_ready, "unknown, error 0"));
+}
+
+TEST(FeederEveryPhase, shouldEndWhenThePrinterAnswersWithoutTheCrcThatWasAskedFor) {
+    Story story = reach(Phase::identifying);
+    story.take();
+    story.feeder.on_not_secured(story.actions);
+    story.expect(ended(OutcomeCode::not_secured, "standby, error 0"));
+    story.feeder.on_not_secured(story.actions);
+    story.expect("");
+}
+
 TEST(FeederEveryPhase, shouldGoOnWithoutIdentityOrCounterInEveryPhase) {
     for (const Phase phase : all_phases) {
         for (const Parameter what : {Parameter::VS, Parameter::JL}) {

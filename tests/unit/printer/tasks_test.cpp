@@ -23,12 +23,13 @@ using testing::Not;
 /// A printer that answers each frame as the manual has it.
 class AnsweringPrinter {
 public:
-    explicit AnsweringPrinter(std::map<std::string, std::string, std::less<>> answers)
+    explicit AnsweringPrinter(std::map<std::string, std::string, std::less<>> answers,
+                              std::string_view profile = "jet3up")
         : peer_{[answers = std::move(answers)](std::string_view frame) {
             const auto found = answers.find(frame);
             return Peer::Reaction{found == answers.end() ? std::string{} : found->second};
         }}
-        , client_(PrinterClient::connect(peer_.settings()).value()) {}
+        , client_(PrinterClient::connect(with_profile(peer_.settings(), profile)).value()) {}
 
     Result<Json> run(std::string_view name, const Json& arguments = nullptr) {
         const Task* const task = find_task(name);
@@ -44,6 +45,11 @@ public:
     std::string heard() { return peer_.heard(); }
 
 private:
+    static ClientSettings with_profile(ClientSettings settings, std::string_view profile) {
+        settings.profile = protocol::parse_profile(profile).value();
+        return settings;
+    }
+
     Peer peer_;
     std::unique_ptr<PrinterClient> client_;
 };
@@ -191,10 +197,13 @@ TEST(Tasks, shouldRefuseWhatLosesSomethingWhileTheMachinePrints) {
     for (const char* name : {"flush", "power off", "restart", "factory-reset"}) {
         EXPECT_EQ(printer.run(name).error().kind, FailureKind::stopped) << name;
     }
+    EXPECT_EQ(printer.run("nozzle close").error().kind, FailureKind::stopped);
+    EXPECT_EQ(printer.run("fonts reload").error().kind, FailureKind::stopped);
     for (const char* frame : {"!FF", "!FA", "!PF", "!RM", "$DFx", "*BEGINLJSCRIPT", "=ZZ1", "^0!FF"}) {
         EXPECT_EQ(printer.run("send", {{"frame", frame}}).error().kind, FailureKind::stopped) << frame;
     }
     EXPECT_THAT(printer.heard(), Not(HasSubstr("!")));
+    EXPECT_TRUE(printer.run("print stop")) << "that it may always";
 }
 
 TEST(Tasks, shouldDoNothingDangerousWhereNobodyKnowsWhetherItPrints) {
@@ -235,6 +244,18 @@ TEST(Tasks, shouldSendCommandsAsTheManualHasThem) {
          {"^0=CC5\t10\n", "^0=CO0\t1\n", "^0=CO3\t1\n", "^0=CO0\t0\n", "^0=CP2\t2\t9999999999\n", "^0=PR1\t700\n"}) {
         EXPECT_THAT(heard, HasSubstr(frame));
     }
+}
+
+TEST(Tasks, shouldNotPretendWhereTheFirmwareKnowsNoSuchCommand) {
+    const Json limit{{"counter", 1}, {"limit", "end"}, {"value", 5}};
+    AnsweringPrinter printer{{{"^0?RS", "^0=RS2\t5\t0\t0\t9\t0\r"}}, "jet2neo"};
+    EXPECT_THAT(printer.run("outputs take").error().message, HasSubstr("jet2neo knows no =CO"));
+    EXPECT_THAT(printer.run("outputs set", {{"output", 1}, {"state", "on"}}).error().message, HasSubstr("=CO"));
+    EXPECT_THAT(printer.run("counter limit", limit).error().message, HasSubstr("counter-limits=on"));
+    EXPECT_THAT(printer.heard(), Not(HasSubstr("=C")));
+    AnsweringPrinter own{{{"^0?RS", "^0=RS2\t5\t0\t0\t9\t0\r"}}, "jet2neo,output-control=on,counter-limits=on"};
+    EXPECT_TRUE(own.run("outputs take"));
+    EXPECT_TRUE(own.run("counter limit", limit));
 }
 
 TEST(Arguments, shouldRefuseWhatATaskDoesNotTake) {

@@ -32,7 +32,8 @@ TEST(LineFit, shouldWaitForRepeatsOfASecuredLineOfAnySpeed) {
     SessionSettings settings;
     settings.line.crc = true;
     fit_to_line(settings, 40);
-    EXPECT_GT(settings.feeder.flush_timeout, feeder::FeederSettings{}.flush_timeout + SecuredLine::repeats_take());
+    EXPECT_GT(settings.feeder.flush_timeout,
+              feeder::FeederSettings{}.flush_timeout + protocol::SecuredLine::repeats_take());
     EXPECT_EQ(settings.feeder.pacing.most_inquiries, 1);
 }
 

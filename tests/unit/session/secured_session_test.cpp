@@ -38,7 +38,7 @@ struct Watching : FrameObserver {
 class SecuredSessionTest : public testing::Test {
 protected:
     /// What happens to the frame that the host sent.
-    enum class Fate { arrives, refused, unannounced, lost, word_damaged, long_word, answer_damaged };
+    enum class Fate { arrives, refused, unannounced, lost, word_damaged, long_word, filled_word, answer_damaged };
 
     /// Answers until the host has nothing more to say. Returns the frames that it sent, without announcements.
     std::string answer_all() {
@@ -67,7 +67,10 @@ protected:
             host_.receive(said);
             return;
         }
-        host_.receive(fate == Fate::word_damaged ? "^0!Og\r" : fate == Fate::long_word ? "^000004!OK\r" : "^0!OK\r");
+        host_.receive(fate == Fate::word_damaged  ? "^0!Og\r"
+                      : fate == Fate::long_word   ? "^000004!OK\r"
+                      : fate == Fate::filled_word ? "^0!OK   \r"
+                                                  : "^0!OK\r");
         if (!said.empty()) {
             std::string crc = std::to_string(protocol::crc32(said.substr(0, said.size() - 1)));
             if (fate == Fate::answer_damaged) {
@@ -102,7 +105,7 @@ protected:
             return "^0=VS1\t1\t1\t1\t1\t1\t1\t1\t1\t1\tS1\r";
         } else if (frame == "^0?JL") {
             return "^0=JLA\r";
-        } else if (frame.starts_with("^0?SC") || frame.starts_with("^0?DS") || frame.starts_with("^0?SH")) {
+        } else if (frame.starts_with("^0?")) {
             return "^0=" + frame.substr(3) + "1\t1\t1\r";
         }
         return {};
@@ -198,6 +201,12 @@ TEST_F(SecuredSessionTest, shouldUnderstandAWordWithALength) {
     EXPECT_EQ(last_, records);
 }
 
+TEST_F(SecuredSessionTest, shouldUnderstandAWordThatIsFilledWithBlanks) {
+    fate_ = [](const std::string&) { return Fate::filled_word; };
+    print_through(0);
+    EXPECT_EQ(last_, records);
+}
+
 TEST_F(SecuredSessionTest, shouldNotTakeOtherBytesForAWord) {
     fate_ = [](const std::string& frame) { return frame.starts_with("^0=MR7\t") ? Fate::lost : Fate::arrives; };
     arm(records);
@@ -228,6 +237,19 @@ TEST_F(SecuredSessionTest, shouldGiveAPrinterUpThatSaysNothing) {
     host_.connect();
     const std::string story = wait_for_end();
     EXPECT_NE(story.find("no_answer"), std::string::npos) << story;
+}
+
+TEST_F(SecuredSessionTest, shouldSayThatAPrinterKnowsNoCrc) {
+    fate_ = [](const std::string&) { return Fate::unannounced; };
+    host_.connect();
+    EXPECT_NE(wait_for_end().find("not_secured"), std::string::npos);
+    EXPECT_LT(host_.now, Instant{std::chrono::seconds{8}});
+}
+
+TEST_F(SecuredSessionTest, shouldBelieveStandbyWithoutCrc) {
+    host_.connect();
+    host_.receive("^0=RS0\t1\t0\t0\t0\t0\r");
+    EXPECT_NE(wait_for_end().find("not_ready"), std::string::npos);
 }
 
 TEST_F(SecuredSessionTest, shouldEndThoughTheLastInquiryGetsLost) {

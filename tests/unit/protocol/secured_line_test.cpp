@@ -1,13 +1,12 @@
 // One secured frame at a time: what the printer says of it, and what its silence means.
 #include "protocol/crc32.hpp"
-#include "session/secured_line.hpp"
+#include "protocol/secured_line.hpp"
 
 #include <gtest/gtest.h>
 
-namespace linefeed::session {
+namespace linefeed::protocol {
 namespace {
 
-using protocol::Parameter;
 using Step = SecuredLine::Step;
 using Kind = SecuredLine::Kind;
 using std::chrono::seconds;
@@ -42,8 +41,8 @@ protected:
     Step answer_sync() {
         EXPECT_EQ(silence(), Step::send);
         const auto code = protocol::parameter_from_code(send().substr(3, 2));
-        EXPECT_EQ(line_.on_right(), Step::wait);
-        return line_.on_answer(code.value());
+        EXPECT_EQ(line_.on_right(now_), Step::wait);
+        return line_.on_answer(code.value(), now_);
     }
     void add(Kind kind, std::string bytes, Parameter what = Parameter::SM) {
         line_.add({.kind = kind, .what = what, .bytes = std::move(bytes)});
@@ -68,14 +67,14 @@ TEST_F(SecuredLineTest, shouldSendOneFrameAfterTheOther) {
     add_records(7, 7);
     EXPECT_EQ(begin(), "^0=MR5\tx");
     EXPECT_EQ(begin(), "nothing") << "the first has not been answered";
-    EXPECT_EQ(line_.on_right(), Step::next);
+    EXPECT_EQ(line_.on_right(now_), Step::next);
     EXPECT_EQ(begin(), "^0=MR6\tx");
-    EXPECT_EQ(line_.on_right(), Step::next);
+    EXPECT_EQ(line_.on_right(now_), Step::next);
     EXPECT_EQ(begin(), "^0!GO");
     EXPECT_EQ(line_.first_waiting(), RecordNumber{7});
-    EXPECT_EQ(line_.on_right(), Step::next);
+    EXPECT_EQ(line_.on_right(now_), Step::next);
     EXPECT_EQ(begin(), "^0=MR7\tx");
-    EXPECT_EQ(line_.on_right(), Step::next);
+    EXPECT_EQ(line_.on_right(now_), Step::next);
     EXPECT_TRUE(line_.idle());
 }
 
@@ -84,19 +83,19 @@ TEST_F(SecuredLineTest, shouldRepeatWhatThePrinterRefuses) {
     EXPECT_EQ(begin(), "^0=MR5\tx");
     EXPECT_EQ(line_.on_refused(), Step::send);
     EXPECT_EQ(send(), "^0=MR5\tx");
-    EXPECT_EQ(line_.on_right(), Step::next);
+    EXPECT_EQ(line_.on_right(now_), Step::next);
 }
 
 TEST_F(SecuredLineTest, shouldNotHeedWhatBelongsToNothing) {
-    EXPECT_EQ(line_.on_right(), Step::wait);
+    EXPECT_EQ(line_.on_right(now_), Step::wait);
     EXPECT_EQ(line_.on_refused(), Step::wait);
-    EXPECT_EQ(line_.on_answer(Parameter::SM), Step::wait);
+    EXPECT_EQ(line_.on_answer(Parameter::SM, now_), Step::wait);
     line_.on_echo("^0=MR5\tx");
     EXPECT_EQ(silence(), Step::wait);
     add_records(5, 5);
     EXPECT_FALSE(line_.idle());
     static_cast<void>(begin());
-    EXPECT_EQ(line_.on_answer(Parameter::SM), Step::wait);
+    EXPECT_EQ(line_.on_answer(Parameter::SM, now_), Step::wait);
     line_.on_echo("^0=MR5");
     EXPECT_EQ(silence(), Step::unproven);
 }
@@ -123,7 +122,7 @@ TEST_F(SecuredLineTest, shouldGiveUpWhatIsLostAgainAndAgain) {
         Step step = silence();
         for (; step == Step::send; step = silence()) {
             const auto code = protocol::parameter_from_code(send().substr(3, 2));
-            ASSERT_EQ(line_.on_answer(*code), Step::send);
+            ASSERT_EQ(line_.on_answer(*code, now_), Step::send);
             EXPECT_EQ(send(), frame);
             ++repeats;
         }
@@ -150,7 +149,7 @@ TEST_F(SecuredLineTest, shouldSendOnlyCommandsInTheEnd) {
     line_.drop_records();
     line_.drop_inquiries();
     EXPECT_EQ(begin(), "^0!ST");
-    EXPECT_EQ(line_.on_right(), Step::next);
+    EXPECT_EQ(line_.on_right(now_), Step::next);
     EXPECT_EQ(begin(), "nothing");
 }
 
@@ -176,6 +175,59 @@ TEST_F(SecuredLineTest, shouldNeverRepeatARecordOfWhichNothingIsKnown) {
     EXPECT_TRUE(line_.idle());
 }
 
+/// The word on the record may come as late as it likes: what is said first behind it proves nothing.
+TEST_F(SecuredLineTest, shouldNotTakeALateWordForThatOnTheStop) {
+    add_records(5, 6);
+    static_cast<void>(begin());
+    EXPECT_EQ(silence(), Step::unproven);
+    line_.drop_records();
+    add(Kind::command, "^0!ST\r");
+    EXPECT_EQ(begin(), "^0!ST") << "at once";
+    EXPECT_EQ(line_.on_right(now_), Step::send) << "perhaps the record's";
+    const auto first = protocol::parameter_from_code(send().substr(3, 2));
+    EXPECT_EQ(line_.on_refused(), Step::send) << "of whichever frame";
+    const auto second = protocol::parameter_from_code(send().substr(3, 2));
+    EXPECT_EQ(line_.on_right(now_), Step::wait);
+    EXPECT_EQ(line_.on_answer(first.value(), now_), Step::wait) << "the word on the second is still to come";
+    EXPECT_EQ(line_.on_answer(second.value(), now_), Step::send);
+    EXPECT_EQ(send(), "^0!ST") << "for the first one may have been refused";
+    EXPECT_EQ(line_.on_right(now_), Step::next);
+    EXPECT_TRUE(line_.proven());
+}
+
+TEST_F(SecuredLineTest, shouldSendNothingButCommandsBeforeALateWordHasComeOrCannotCome) {
+    add_records(5, 5);
+    static_cast<void>(begin());
+    EXPECT_EQ(silence(), Step::unproven);
+    EXPECT_FALSE(line_.proven());
+    add(Kind::once, "^0!EQ\r");
+    add(Kind::inquiry, "^0?SM\r");
+    const std::string sync = begin();
+    EXPECT_EQ(sync.substr(0, 3), "^0?");
+    EXPECT_EQ(line_.on_right(now_), Step::wait);
+    EXPECT_EQ(line_.on_answer(protocol::parameter_from_code(sync.substr(3, 2)).value(), now_), Step::send);
+    EXPECT_EQ(send(), "^0!EQ");
+    EXPECT_EQ(line_.on_right(now_), Step::next);
+    EXPECT_TRUE(line_.proven());
+    EXPECT_EQ(begin(), "^0?SM") << "in step again";
+}
+
+TEST_F(SecuredLineTest, shouldNeverCallARecordDeliveredThatHasNotGoneOut) {
+    add(Kind::command, "^0!GO\r");
+    add_records(5, 5);
+    static_cast<void>(begin());
+    Step step = silence();
+    for (; step == Step::send; step = silence()) {
+        static_cast<void>(send());
+    }
+    EXPECT_EQ(step, Step::next);
+    EXPECT_EQ(begin().substr(0, 3), "^0?");
+    for (step = silence(); step == Step::send; step = silence()) {
+        EXPECT_EQ(send().substr(0, 3), "^0?");
+    }
+    EXPECT_EQ(step, Step::unproven);
+}
+
 TEST_F(SecuredLineTest, shouldTakeTheEchoForProof) {
     add_records(5, 6);
     static_cast<void>(begin());
@@ -183,18 +235,33 @@ TEST_F(SecuredLineTest, shouldTakeTheEchoForProof) {
     line_.on_echo("^0=MR5\tx");
     line_.on_echo("^0=MR5\ty");
     EXPECT_EQ(answer_sync(), Step::next);
+    EXPECT_TRUE(line_.proven());
     static_cast<void>(begin());
     line_.on_echo("^0=MR5\tx");
     EXPECT_EQ(silence(), Step::unproven) << "that was the one before";
 }
 
+/// The echo says that it has come, and then something is refused: perhaps the inquiry, perhaps the record, late.
+TEST_F(SecuredLineTest, shouldNeverSendARecordTwiceThatMayHaveBeenTaken) {
+    add_records(5, 5);
+    static_cast<void>(begin());
+    line_.on_echo("^0=MR5\tx");
+    EXPECT_EQ(silence(), Step::send);
+    const std::string sync = send();
+    EXPECT_EQ(line_.on_refused(), Step::send);
+    const std::string second = send();
+    EXPECT_NE(second, sync);
+    EXPECT_EQ(line_.on_answer(protocol::parameter_from_code(second.substr(3, 2)).value(), now_), Step::unproven);
+    EXPECT_FALSE(line_.proven());
+}
+
 TEST_F(SecuredLineTest, shouldWaitForTheAnswerOfAnInquiry) {
     add(Kind::inquiry, "^0?SM\r");
     static_cast<void>(begin());
-    EXPECT_EQ(line_.on_right(), Step::wait);
-    EXPECT_EQ(line_.on_answer(Parameter::RS), Step::wait);
-    EXPECT_EQ(line_.on_answer(Parameter::SM), Step::next);
-    EXPECT_EQ(line_.on_answer(Parameter::SM), Step::wait) << "nobody asked";
+    EXPECT_EQ(line_.on_right(now_), Step::wait);
+    EXPECT_EQ(line_.on_answer(Parameter::RS, now_), Step::wait);
+    EXPECT_EQ(line_.on_answer(Parameter::SM, now_), Step::next);
+    EXPECT_EQ(line_.on_answer(Parameter::SM, now_), Step::wait) << "nobody asked";
 }
 
 TEST_F(SecuredLineTest, shouldAskAgainOnlyWhenNoAnswerCanBeOnItsWay) {
@@ -203,15 +270,15 @@ TEST_F(SecuredLineTest, shouldAskAgainOnlyWhenNoAnswerCanBeOnItsWay) {
     EXPECT_EQ(silence(), Step::send);
     const std::string first = send();
     EXPECT_NE(first, "^0?SM");
-    EXPECT_EQ(line_.on_answer(Parameter::SM), Step::wait) << "late: it is not the one that will be asked for";
+    EXPECT_EQ(line_.on_answer(Parameter::SM, now_), Step::wait) << "late: it is not the one that will be asked for";
     EXPECT_EQ(silence(), Step::send);
     const std::string second = send();
     EXPECT_NE(second, first) << "an answer to the first could be on its way, too";
     const auto code = protocol::parameter_from_code(second.substr(3, 2));
     ASSERT_TRUE(code);
-    EXPECT_EQ(line_.on_answer(*code), Step::send);
+    EXPECT_EQ(line_.on_answer(*code, now_), Step::send);
     EXPECT_EQ(send(), "^0?SM");
-    EXPECT_EQ(line_.on_answer(Parameter::SM), Step::next);
+    EXPECT_EQ(line_.on_answer(Parameter::SM, now_), Step::next);
 }
 
 /// Its answers come after 350 ms: too late for the first, but not for ever.
@@ -224,10 +291,54 @@ TEST_F(SecuredLineTest, shouldGetUsedToAPrinterThatIsSlowToAnswer) {
     EXPECT_EQ(line_.on_time(now_ += slow), Step::send);
     const auto code = protocol::parameter_from_code(send().substr(3, 2));
     EXPECT_EQ(line_.on_time(now_ += slow), Step::wait);
-    EXPECT_EQ(line_.on_answer(code.value()), Step::send);
+    EXPECT_EQ(line_.on_answer(code.value(), now_), Step::send);
     static_cast<void>(send());
     EXPECT_EQ(line_.on_time(now_ += slow), Step::wait);
-    EXPECT_EQ(line_.on_answer(Parameter::SM), Step::next);
+    EXPECT_EQ(line_.on_answer(Parameter::SM, now_), Step::next);
+    add(Kind::inquiry, "^0?SM\r");
+    static_cast<void>(begin());
+    EXPECT_EQ(line_.on_time(now_ += slow), Step::wait) << "it does not forget so soon";
+}
+
+/// Where answers get lost, but are quick otherwise, it waits no longer than before.
+TEST_F(SecuredLineTest, shouldGetUsedToAPrinterThatIsQuickAgain) {
+    add(Kind::inquiry, "^0?SM\r");
+    static_cast<void>(begin());
+    for (int i = 0; i < 3; ++i) {
+        EXPECT_EQ(silence(), Step::send);
+        static_cast<void>(send());
+    }
+    const Instant sent = now_;
+    EXPECT_GT(*line_.deadline(), sent + std::chrono::milliseconds{500});
+    EXPECT_EQ(silence(), Step::send);
+    const auto code = protocol::parameter_from_code(send().substr(3, 2));
+    EXPECT_EQ(line_.on_answer(code.value(), now_ += std::chrono::milliseconds{20}), Step::send);
+    static_cast<void>(send());
+    EXPECT_LT(*line_.deadline(), now_ + std::chrono::milliseconds{250});
+}
+
+/// A picture is worked out when it is asked for.
+TEST_F(SecuredLineTest, shouldGiveThePrinterTimeForAnAnswerOnceItHasTheInquiry) {
+    SecuredLine patient{{.crc = true, .answer_takes = seconds{2}}};
+    patient.add({.kind = Kind::inquiry, .what = Parameter::GW, .bytes = "^0?GW\r"});
+    static_cast<void>(patient.begin());
+    static_cast<void>(patient.announced(now_));
+    EXPECT_EQ(patient.on_right(now_), Step::wait);
+    EXPECT_EQ(patient.on_time(now_ + seconds{1}), Step::wait);
+    EXPECT_EQ(patient.on_answer(Parameter::GW, now_ + seconds{1}), Step::next);
+}
+
+TEST_F(SecuredLineTest, shouldNeverPutTheSameInquiryInBetween) {
+    for (int i = 0; i < 6; ++i) {
+        add(Kind::inquiry, "^0?DS\r", Parameter::DS);
+        static_cast<void>(begin());
+        EXPECT_EQ(silence(), Step::send);
+        const std::string sync = send();
+        EXPECT_NE(sync, "^0?DS");
+        EXPECT_EQ(line_.on_answer(protocol::parameter_from_code(sync.substr(3, 2)).value(), now_), Step::send);
+        EXPECT_EQ(send(), "^0?DS");
+        EXPECT_EQ(line_.on_answer(Parameter::DS, now_), Step::next);
+    }
 }
 
 TEST_F(SecuredLineTest, shouldGiveAnInquiryUp) {
@@ -249,11 +360,12 @@ TEST_F(SecuredLineTest, shouldRepeatACommandButNotWhatMustHappenOnce) {
     static_cast<void>(begin());
     EXPECT_EQ(silence(), Step::send);
     const auto code = protocol::parameter_from_code(send().substr(3, 2));
-    EXPECT_EQ(line_.on_answer(*code), Step::send);
+    EXPECT_EQ(line_.on_answer(*code, now_), Step::send);
     EXPECT_EQ(send(), "^0!ST");
-    EXPECT_EQ(line_.on_right(), Step::next);
+    EXPECT_EQ(line_.on_right(now_), Step::next);
     EXPECT_EQ(begin(), "^0!EQ");
     EXPECT_EQ(answer_sync(), Step::next);
+    EXPECT_FALSE(line_.proven());
     EXPECT_TRUE(line_.idle());
 }
 
@@ -268,4 +380,4 @@ TEST_F(SecuredLineTest, shouldWaitAsLongAsTheBytesTake) {
 }
 
 } // namespace
-} // namespace linefeed::session
+} // namespace linefeed::protocol

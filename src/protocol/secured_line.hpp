@@ -6,10 +6,11 @@
 // been taken without a check because the announcement was lost. An inquiry or a command can be repeated all the same,
 // once it is certain that no answer to the first is still on its way: an inquiry of another kind is put in between, and
 // answers keep their order. A record cannot: it may lie in the FIFO with a damaged text. It is unproven, and must not
-// be printed.
+// be printed. Where a frame was given up, its word may still come. The next command goes out all the same (it is
+// `!ST`), but the first word behind it proves nothing: an inquiry is put in between, and the command is repeated. All
+// else waits until such an inquiry is answered.
 #pragma once
 
-#include "base/bounded_list.hpp"
 #include "base/record_number.hpp"
 #include "base/time.hpp"
 #include "protocol/commands.hpp"
@@ -20,12 +21,13 @@
 #include <string>
 #include <string_view>
 
-namespace linefeed::session {
+namespace linefeed::protocol {
 
 /// What the line between host and printer is like.
 struct LineSettings {
     double bytes_per_second = 0; ///< each way; 0 = so many that they need no counting
     bool crc = false;            ///< frames are secured
+    Duration answer_takes{0}; ///< the printer may need so long for an answer when it has said that the inquiry is right
 
     /// How long so many bytes take.
     [[nodiscard]] Duration time_of(std::size_t bytes) const;
@@ -51,10 +53,10 @@ public:
     };
     struct Frame {
         Kind kind = Kind::command;
-        protocol::Parameter what = protocol::Parameter::SM; ///< of an inquiry
-        RecordNumber number{};                              ///< of the record that is under way
-        RecordRange records{};                              ///< that have not begun
-        std::string bytes{};                                ///< from `^` to CR
+        Parameter what = Parameter::SM; ///< of an inquiry
+        RecordNumber number{};          ///< of the record that is under way
+        RecordRange records{};          ///< that have not begun
+        std::string bytes{};            ///< from `^` to CR
     };
     /// What a fact leads to.
     enum class Step {
@@ -68,7 +70,7 @@ public:
     explicit SecuredLine(const LineSettings& line)
         : line_(line) {}
     /// How long one frame may take on a bad line, besides the bytes.
-    [[nodiscard]] static constexpr Duration repeats_take() { return max_syncs * least_patience; }
+    [[nodiscard]] static Duration repeats_take();
 
     void add(Frame frame);
     void add_records(RecordRange records);
@@ -92,15 +94,23 @@ public:
     [[nodiscard]] std::string_view announced(Instant now);
 
     /// `!OK`.
-    [[nodiscard]] Step on_right();
+    [[nodiscard]] Step on_right(Instant now);
     /// `=FC`.
     [[nodiscard]] Step on_refused();
     /// An answer to the inquiry `what`, which was secured and right.
-    [[nodiscard]] Step on_answer(protocol::Parameter what);
+    [[nodiscard]] Step on_answer(Parameter what, Instant now);
+    /// The frame current(), which is settled, has arrived as it was sent.
+    [[nodiscard]] bool proven() const { return proven_; }
+    /// Nothing is under way but the inquiry that is put in between.
+    [[nodiscard]] bool syncing() const { return state_ == State::syncing; }
+    /// Whether an answer to `what` is waited for.
+    [[nodiscard]] bool is(Parameter what) const;
     /// A command or record came back (`!EM`), from `^` up to and without the CR.
     void on_echo(std::string_view frame);
     [[nodiscard]] Step on_time(Instant now);
     [[nodiscard]] std::optional<Instant> deadline() const;
+    /// Nothing more is waited for of the frame that is under way.
+    void give_up();
     /// The connection is gone, or nothing more is wanted.
     void clear();
 
@@ -110,25 +120,31 @@ private:
         sent,    ///< waits for `!OK`, and an inquiry for its answer
         syncing, ///< the printer's silence is over when it answers this other inquiry
     };
-    [[nodiscard]] bool is(protocol::Parameter what) const;
+    [[nodiscard]] Frame& waiting(std::size_t place) { return frames_[(oldest_ + place) % max_frames]; }
     [[nodiscard]] Step settled(Step step);
+    void note_answer(Instant now);
+    [[nodiscard]] Step given_up();
+    [[nodiscard]] Step begin_sync();
     [[nodiscard]] Step sync();
 
     LineSettings line_;
-    [[nodiscard]] Frame& waiting(std::size_t place) { return frames_[(oldest_ + place) % max_frames]; }
-
     std::array<Frame, max_frames> frames_{}; ///< ring
     std::size_t oldest_ = 0;
     std::size_t size_ = 0;
     Frame current_;
     std::string announced_;
     State state_ = State::idle;
+    Instant announced_at_{};
     Instant deadline_{};
     Duration patience_ = least_patience; ///< grows while nothing at all is answered in time
     int tries_ = 0;
     int syncs_ = 0;
     std::size_t sync_ = 0; ///< which inquiry
     bool echoed_ = false;
+    bool disputed_ = false; ///< a refusal came while the line was syncing: of the inquiry, or of current()
+    bool proven_ = false;
+    bool sent_ = false;  ///< current() has gone out
+    bool stray_ = false; ///< a word on a frame that was given up may still come
 };
 
-} // namespace linefeed::session
+} // namespace linefeed::protocol

@@ -1,4 +1,4 @@
-#include "session/secured_line.hpp"
+#include "protocol/secured_line.hpp"
 
 #include "base/assert.hpp"
 #include "protocol/crc32.hpp"
@@ -6,16 +6,24 @@
 
 #include <algorithm>
 
-namespace linefeed::session {
-
-using protocol::Parameter;
+namespace linefeed::protocol {
 
 namespace {
 
-/// Inquiries that nobody else makes here, so that an answer belongs to this one.
+/// Inquiries that are seldom made otherwise: an answer to the one that is put in between must belong to it.
 constexpr std::array syncs{Parameter::SC, Parameter::DS, Parameter::SH, Parameter::MC, Parameter::IC, Parameter::OC};
 
 } // namespace
+
+Duration SecuredLine::repeats_take() {
+    Duration sum = least_patience;
+    Duration patience = least_patience;
+    for (int sync = 0; sync < max_syncs; ++sync) {
+        sum += patience;
+        patience = std::min(2 * patience, most_patience);
+    }
+    return sum;
+}
 
 Duration LineSettings::time_of(std::size_t bytes) const {
     return bytes_per_second > 0 ? std::chrono::duration_cast<Duration>(
@@ -75,9 +83,17 @@ const SecuredLine::Frame* SecuredLine::begin() {
             --size_;
         }
         if (!dropped) {
-            state_ = State::sent;
             tries_ = 0;
+            syncs_ = 0;
             echoed_ = false;
+            disputed_ = false;
+            proven_ = false;
+            sent_ = !stray_ || current_.kind == Kind::command;
+            if (sent_) {
+                state_ = State::sent;
+            } else {
+                static_cast<void>(sync());
+            }
             return &current_;
         }
     }
@@ -87,13 +103,14 @@ const SecuredLine::Frame* SecuredLine::begin() {
 std::string_view SecuredLine::announced(Instant now) {
     std::string sync;
     if (state_ == State::syncing) {
-        protocol::append_inquiry(sync, syncs.at(sync_));
+        append_inquiry(sync, syncs.at(sync_));
     }
     const std::string_view frame = state_ == State::syncing ? std::string_view{sync} : current_.bytes;
     announced_.clear();
-    const std::uint32_t crc = protocol::crc32(frame.substr(0, frame.size() - 1));
-    protocol::append_frame(announced_, protocol::Group::parameter, "NR" + std::to_string(crc));
+    const std::uint32_t crc = crc32(frame.substr(0, frame.size() - 1));
+    append_frame(announced_, Group::parameter, "NR" + std::to_string(crc));
     announced_ += frame;
+    announced_at_ = now;
     deadline_ = now + line_.time_of(announced_.size() + answer_bytes) + patience_;
     return announced_;
 }
@@ -108,32 +125,60 @@ SecuredLine::Step SecuredLine::settled(Step step) {
     return step;
 }
 
-SecuredLine::Step SecuredLine::on_right() {
-    const bool proven = state_ == State::sent && current_.kind != Kind::inquiry;
-    return proven ? settled(Step::next) : Step::wait;
+SecuredLine::Step SecuredLine::given_up() {
+    return settled(current_.kind == Kind::inquiry                              ? Step::lost
+                   : current_.kind == Kind::record && !(echoed_ && !disputed_) ? Step::unproven
+                                                                               : Step::next);
+}
+
+/// What grew because answers got lost must not stay for ever.
+void SecuredLine::note_answer(Instant now) {
+    patience_ = std::clamp(2 * (now - announced_at_), least_patience, patience_);
+}
+
+SecuredLine::Step SecuredLine::on_right(Instant now) {
+    if (state_ != State::sent) {
+        return Step::wait;
+    }
+    if (current_.kind == Kind::inquiry) {
+        deadline_ = std::max(deadline_, now + line_.answer_takes);
+        return Step::wait;
+    }
+    note_answer(now);
+    proven_ = !stray_;
+    return stray_ ? begin_sync() : settled(Step::next);
 }
 
 SecuredLine::Step SecuredLine::on_refused() {
     if (state_ == State::idle) {
         return Step::wait;
     }
-    echoed_ = false; // it has come, but not as it was sent
-    if (++tries_ < max_tries) {
-        return Step::send;
+    if (++tries_ == max_tries) {
+        return given_up();
     }
-    return settled(current_.kind == Kind::record    ? Step::unproven
-                   : current_.kind == Kind::inquiry ? Step::lost
-                                                    : Step::next);
+    if (syncing()) { // the inquiry is refused, or a late word has come: an answer to this one would not tell
+        disputed_ = true;
+        return sync();
+    }
+    echoed_ = false; // it has come, but not as it was sent
+    return Step::send;
 }
 
-SecuredLine::Step SecuredLine::on_answer(Parameter what) {
+SecuredLine::Step SecuredLine::on_answer(Parameter what, Instant now) {
     if (!is(what)) {
         return Step::wait;
     }
-    if (state_ == State::sent || echoed_ || current_.kind == Kind::once) {
+    note_answer(now);
+    stray_ = false; // answers keep their order
+    proven_ = state_ == State::sent || (sent_ && echoed_ && !disputed_);
+    if (proven_ || (sent_ && current_.kind == Kind::once)) {
         return settled(Step::next);
     }
+    if (sent_ && current_.kind == Kind::record) {
+        return settled(Step::unproven); // it may lie in the FIFO, and must not come twice
+    }
     state_ = State::sent;
+    sent_ = true;
     return Step::send;
 }
 
@@ -146,27 +191,25 @@ SecuredLine::Step SecuredLine::on_time(Instant now) {
     if (state_ == State::idle || now < deadline_) {
         return Step::wait;
     }
+    stray_ = true;
     if (state_ == State::syncing) {
         patience_ = std::min(2 * patience_, most_patience);
-        if (++syncs_ < max_syncs) {
-            return sync();
-        }
-        return settled(current_.kind == Kind::inquiry ? Step::lost : Step::next);
+        return ++syncs_ < max_syncs ? sync() : given_up();
     }
-    if (current_.kind == Kind::record && !echoed_) {
-        return settled(Step::unproven);
-    }
-    // Whether it is repeated or not: a late word must not be taken for that on the next frame.
-    if (++tries_ == max_tries) {
-        return settled(current_.kind == Kind::inquiry ? Step::lost : Step::next);
-    }
+    const bool unproven = current_.kind == Kind::record && !echoed_;
+    return !unproven && ++tries_ < max_tries ? begin_sync() : given_up();
+}
+
+SecuredLine::Step SecuredLine::begin_sync() {
     syncs_ = 0;
     return sync();
 }
 
 SecuredLine::Step SecuredLine::sync() {
     state_ = State::syncing;
-    sync_ = (sync_ + 1) % syncs.size();
+    do {
+        sync_ = (sync_ + 1) % syncs.size();
+    } while (current_.kind == Kind::inquiry && current_.what == syncs.at(sync_));
     return Step::send;
 }
 
@@ -174,9 +217,15 @@ std::optional<Instant> SecuredLine::deadline() const {
     return busy() ? std::optional{deadline_} : std::nullopt;
 }
 
-void SecuredLine::clear() {
-    size_ = 0;
+void SecuredLine::give_up() {
+    stray_ = stray_ || busy();
     state_ = State::idle;
 }
 
-} // namespace linefeed::session
+void SecuredLine::clear() {
+    size_ = 0;
+    state_ = State::idle;
+    stray_ = false;
+}
+
+} // namespace linefeed::protocol
