@@ -38,6 +38,14 @@ struct Counts {
     }
 };
 
+/// What noise did to a secured line.
+struct Noise {
+    Instant at_printer = Instant::min(); ///< when it last arrived there
+    /// The last record that was damaged. The host sends none behind it before the printer has confirmed it.
+    std::uint32_t record = 0;
+    Instant record_left_at = Instant::min();
+};
+
 struct Context {
     Context(const Scenario& scenario_, bool verbose)
         : scenario(scenario_)
@@ -48,6 +56,7 @@ struct Context {
     EventQueue queue;
     Trace trace;
     Counts counts;
+    Noise noise;
 
     void after(Duration delay, EventKind kind, std::uint64_t a = 0, std::uint64_t b = 0) {
         queue.put(now + delay, kind, a, b);

@@ -96,6 +96,8 @@ void Host::start(const daemon::OperatorWord& word) {
     refusals_before_ = RamDisk::instance().refusals();
     word_ = word;
     word_counts_ = word.given();
+    patience_ = {};
+    changed_by_noise_ = {};
     interrupted_ = false;
     ending_ = Ending{};
     ending_.code = OutcomeCode::nothing_to_print;
@@ -238,6 +240,7 @@ void Host::kill(std::uint64_t in_steps) {
 
 void Host::die() {
     context_.trace.note(context_.now, "process dies");
+    judge_.host_died();
     steps_to_live_.reset();
     effects_.clear();
     if (run_) {

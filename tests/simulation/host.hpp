@@ -4,6 +4,7 @@
 #pragma once
 
 #include "context.hpp"
+#include "daemon/line_use.hpp"
 #include "daemon/operator_word.hpp"
 #include "judge.hpp"
 #include "ram_disk.hpp"
@@ -99,6 +100,8 @@ private:
     spool::JobId job_{};
     RecordRange wanted_;
     std::unique_ptr<Run> run_;
+    daemon::NoisePatience patience_;
+    daemon::JobRunSettings changed_by_noise_;
     session::Effects effects_;
     Ending ending_;
     daemon::OperatorWord word_;

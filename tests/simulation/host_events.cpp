@@ -42,6 +42,7 @@ void Host::begin_run(const std::optional<daemon::OpenIssue>& open) {
     settings.charsets.resize(context_.scenario.two_fields ? 2 : 1, protocol::Charset::latin1);
     settings.line.crc = context_.scenario.crc;
     session::fit_to_line(settings, usual_record_bytes);
+    settings.feeder.level_at_most = changed_by_noise_.session.feeder.level_at_most;
     const std::uint64_t generation = ++generation_;
     run_ = std::make_unique<Run>(
         settings, plan,
@@ -185,6 +186,13 @@ void Host::run_over() {
     context_.trace.note(context_.now, "run ends", static_cast<std::uint64_t>(outcome.code), outcome.issued ? 1 : 0);
     wire_.host_closes(run_->connection);
     const std::string storage_failure = run_->store.failure();
+    const feeder::Feeder& feeder = run_->session.feeder();
+    daemon::RunProgress progress;
+    progress.range = feeder.refill().range();
+    progress.printed_through = feeder.refill().printed_through();
+    progress.rate_per_s = feeder.rate();
+    progress.fifo_depth = feeder.mail().depth;
+    const bool noise_only = patience_.goes_on(outcome, progress, changed_by_noise_);
     run_.reset();
     steps_to_live_.reset();
     paused_until_ = {};
@@ -198,7 +206,7 @@ void Host::run_over() {
     ending_.code = outcome.code;
     word_counts_ = word_counts_ && !outcome.issued;
     const bool doubt_to_settle = outcome.code == feeder::OutcomeCode::records_in_doubt && !outcome.issued;
-    if (outcome.code != feeder::OutcomeCode::finished && !doubt_to_settle) {
+    if (outcome.code != feeder::OutcomeCode::finished && !doubt_to_settle && !noise_only) {
         end_process(outcome.code);
     } else {
         next_run();

@@ -25,6 +25,8 @@ public:
     void product_without_record(bool explained);
     void buffer_overfull();
     void numbers_out_of_order();
+    /// The process is gone before it could write down what it knew.
+    void host_died();
 
     // The operator's decisions about records in doubt
     void will_skip(RecordRange range);
@@ -56,8 +58,10 @@ private:
         std::uint8_t aborted = 0;
         std::uint8_t may_repeat = 0; ///< times the operator had it printed again
         bool may_be_missing = false;
+        bool spoiled = false; ///< a product carries it with a damaged text
     };
     [[nodiscard]] Product* product(RecordNumber number);
+    [[nodiscard]] bool printer_could_not_be_stopped() const;
 
     Context& context_;
     std::vector<Product> products_;

@@ -3,11 +3,22 @@
 #include "base/assert.hpp"
 
 #include <algorithm>
+#include <charconv>
 
 namespace linefeed::simulation {
 
 namespace {
 constexpr std::size_t connections_kept = 16; ///< older ones have nothing in flight any more
+
+std::uint32_t first_record(std::string_view bytes) {
+    constexpr std::string_view mail = "^0=MR";
+    std::uint32_t number = 0;
+    if (const auto at = bytes.find(mail); at != std::string_view::npos) {
+        std::from_chars(bytes.data() + at + mail.size(), bytes.data() + bytes.size(), number);
+    }
+    return number;
+}
+
 } // namespace
 
 Wire::Wire(Context& context, Random random)
@@ -33,6 +44,7 @@ void Wire::send(std::uint64_t connection, bool to_printer, std::string_view byte
     if (it == nullptr) {
         return;
     }
+    record_ = to_printer ? first_record(bytes) : 0;
     while (!bytes.empty()) {
         const bool splits = context_.scenario.split > 0 && bytes.size() > 1 && random_.chance(context_.scenario.split);
         const std::size_t size = splits ? random_.between(1, bytes.size() - 1) : bytes.size();
@@ -57,6 +69,13 @@ void Wire::put(Connection& connection, bool to_printer, std::string_view bytes) 
     chunk.bytes.assign(bytes);
     const bool noise = context_.scenario.damage > 0 && random_.chance(context_.scenario.damage);
     if (noise && context_.scenario.crc) {
+        if (to_printer) {
+            context_.noise.at_printer = last;
+        }
+        if (record_ != 0) {
+            context_.noise.record = record_;
+            context_.noise.record_left_at = context_.now;
+        }
         damage_anything(chunk.bytes, to_printer);
     } else if (noise && !(to_printer && noise_to_printer_)) {
         damage(chunk.bytes, to_printer);

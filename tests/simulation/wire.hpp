@@ -74,6 +74,7 @@ private:
     std::uint64_t last_id_ = 0;
     bool down_ = false;
     bool noise_to_printer_ = false; ///< on the last chunk
+    std::uint32_t record_ = 0;      ///< the first in what is being sent; 0 = none
 };
 
 } // namespace linefeed::simulation
