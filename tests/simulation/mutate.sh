@@ -2,6 +2,7 @@
 # Shows that the judge can fail: compiles each file of the core that has a deliberate mistake (mutations/*.patch), links the simulation with it
 # and runs seeds until one catches it. Prints a table. Fails if a patch does not apply or a mistake is not caught within the seeds allowed.
 #   mutate.sh SOURCE_DIR BUILD_DIR [SEEDS] [PATTERN]
+# Mistakes with "secured" in their name are looked for with the profile of that name.
 # BUILD_DIR is a configured build (Ninja); only the mistaken file is compiled anew, into BUILD_DIR/mutations. Patches are of .cpp files.
 set -eu
 source=$(cd "$1" && pwd)
@@ -17,14 +18,16 @@ ninja linefeed_simulation >"$work/build.log" 2>&1 || { tail -20 "$work/build.log
 ninja -t commands linefeed_simulation >"$work/commands"
 link=$(grep -F -- '-o bin/linefeed_simulation ' "$work/commands" | tail -1)
 
-# run PROGRAM: the first violation
+# run PROGRAM PROFILE: the first violation
 run() {
-    "$1" --from 1 --count "$seeds" --stop-at-first >"$work/run.log" 2>&1 || true
+    "$1" --profile "$2" --from 1 --count "$seeds" --stop-at-first >"$work/run.log" 2>&1 || true
     grep -m 1 '^VIOLATION' "$work/run.log" || true
 }
 
-caught=$(run bin/linefeed_simulation)
-[ -z "$caught" ] || { echo "the simulation finds something without any mistake: $caught"; exit 1; }
+for profile in mixed secured; do
+    caught=$(run bin/linefeed_simulation $profile)
+    [ -z "$caught" ] || { echo "the simulation finds something without any mistake: $caught"; exit 1; }
+done
 missed=0
 total=0
 printf '%-34s %-8s %s\n' mistake "at seed" "caught by"
@@ -39,7 +42,11 @@ for patch in "$here"/mutations/*${pattern}*.patch; do
     # An object is linked before the libraries, so it takes the place of the library's own.
     with_mistake=$(echo "$link" | sed "s, -o bin/linefeed_simulation , $work/mistaken.o -o $work/mistaken ,")
     { sh -c "$compile" && sh -c "$with_mistake"; } >"$work/build.log" 2>&1 || { echo "$name does not compile:"; tail -20 "$work/build.log"; exit 1; }
-    caught=$(run "$work/mistaken")
+    case $name in
+        *secured*) profile=secured ;;
+        *) profile=mixed ;;
+    esac
+    caught=$(run "$work/mistaken" $profile)
     if [ -n "$caught" ]; then
         printf '%-34s %-8s %s\n' "$name" "$(echo "$caught" | sed 's/VIOLATION seed \([0-9]*\):.*/\1/')" "${caught#*: }"
     else
