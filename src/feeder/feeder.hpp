@@ -47,6 +47,7 @@ struct FeederSettings {
     Duration start_timeout = std::chrono::seconds{15};
     Duration stop_timeout = std::chrono::seconds{10};
     Duration stop_repeat = std::chrono::milliseconds{500}; ///< `!ST` again while it prints on: one may be lost
+    Duration go_repeat = std::chrono::seconds{1};          ///< `!GO` again while it stands with the whole fill
     Duration finish_timeout = std::chrono::seconds{2};     ///< for the print in progress, and for `!EQ` to be seen
     Duration nozzle_timeout = std::chrono::seconds{120};
     /// Records of the first fill, and of one refill, at most: what a slow line carries in a moment.
@@ -195,6 +196,7 @@ private:
     void verify(Instant now, Actions& out);
     void go(Instant now, Actions& out);
     void start_mail(Instant now, Actions& out);
+    void go_again(Instant now, Actions& out);
     void start_answered(Instant now, Actions& out);
     [[nodiscard]] bool is_allowed(const protocol::PrinterError& error) const;
     [[nodiscard]] bool may_acknowledge(const protocol::PrinterError& error) const;
@@ -315,6 +317,8 @@ private:
     Instant mail_due_{};   ///< next `?SM` while printing
     Instant status_due_{}; ///< next `?RS` while printing
     std::optional<Instant> go_due_;
+    Instant go_sent_at_{};
+    std::uint32_t entries_filled_ = 0; ///< as reported before `!GO`
     Instant stop_sent_at_{};
 
     bool taking_over_ = false;

@@ -249,6 +249,7 @@ void Feeder::verify(Instant now, Actions& out) {
         out.push_back(Notice{NoticeCode::entries_differ, {}});
         doubt_number(); // a stop, or a damaged line, may have cost a part of the fill
     }
+    entries_filled_ = mail_.entries;
     enter(Phase::starting, now, Duration::max());
     go_due_ = now + settings_.fill_lead;
 }
@@ -257,8 +258,20 @@ void Feeder::go(Instant now, Actions& out) {
     enter(Phase::starting, now, settings_.start_timeout);
     pacing_.restart(now);
     out.push_back(Command{protocol::Action::start_print});
+    go_sent_at_ = now;
     ask(Parameter::RS, now, out);
     ask(Parameter::SM, now, out);
+}
+
+/// It stands. `!GO` may be lost, or an operator may have stopped the printer already, which empties the FIFO; behind a
+/// stop it must not start again.
+void Feeder::go_again(Instant now, Actions& out) {
+    const bool untouched = mail_reads_ >= 2 && mail_.entries > 0 && mail_.entries == entries_filled_;
+    if (untouched && now - go_sent_at_ >= settings_.go_repeat) {
+        out.push_back(Command{protocol::Action::start_print});
+        go_sent_at_ = now;
+    }
+    ask_later(Parameter::RS, now);
 }
 
 /// The first products may be through before the answer that it prints: the refill does not wait for that.
@@ -304,7 +317,7 @@ void Feeder::start_answered(Instant now, Actions& out) {
         begin_judging(now, out); // a short run that is over already
         return;
     }
-    ask_later(Parameter::RS, now);
+    go_again(now, out);
 }
 
 } // namespace linefeed::feeder

@@ -44,12 +44,14 @@ void SecuredLine::add_records(RecordRange records) {
     add(std::move(frame));
 }
 
-void SecuredLine::drop_inquiries() {
+std::optional<Parameter> SecuredLine::drop_inquiry() {
     for (std::size_t i = 0; i < size_; ++i) {
         if (waiting(i).kind == Kind::inquiry) {
             waiting(i).kind = Kind::record; // of which there are none
+            return waiting(i).what;
         }
     }
+    return std::nullopt;
 }
 
 void SecuredLine::drop_records() {

@@ -76,11 +76,13 @@ public:
     void add_records(RecordRange records);
     /// Records that have not begun will not: the line is being stopped.
     void drop_records();
-    /// Nor will inquiries: nobody wants the answers any more.
-    void drop_inquiries();
+    /// Nor will the first inquiry that waits: nobody wants the answer any more. Which it was; absent = none waits.
+    std::optional<Parameter> drop_inquiry();
     /// The first record that has not begun; absent = none waits.
     [[nodiscard]] std::optional<RecordNumber> first_waiting() const;
 
+    /// The frame under way is an inquiry.
+    [[nodiscard]] bool asks() const { return busy() && current_.kind == Kind::inquiry; }
     /// A frame is under way.
     [[nodiscard]] bool busy() const { return state_ != State::idle; }
     [[nodiscard]] bool idle() const { return !busy() && size_ == 0; }

@@ -128,7 +128,7 @@ private:
     void carry_out(const feeder::Action& action, Instant now, Effects& out);
     void send_command(protocol::SecuredLine::Kind kind, Instant now,
                       protocol::Parameter what = protocol::Parameter::SM);
-    void give_inquiry_up(Instant now);
+    void give_inquiries_up(Instant now);
     void send_records(RecordRange records, Instant now);
     void stage_records(RecordRange records, Instant now);
     void stage_command(std::string_view bytes, Instant now);

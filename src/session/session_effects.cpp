@@ -48,10 +48,12 @@ void Session::carry_out(const feeder::Action& action, Instant now, Effects& out)
         void operator()(const feeder::Command& command) const {
             if (command.what == protocol::Action::stop_print) {
                 session.secured_.drop_records();
-                session.give_inquiry_up(now);
+                session.give_inquiries_up(now);
             }
-            // Never a blind `!EQ`: repeated, it could meet an error that nobody has seen.
-            const bool once = command.what == protocol::Action::acknowledge_errors;
+            // Never a blind `!EQ`: repeated, it could meet an error that nobody has seen. Nor a blind `!GO`, which
+            // could meet a printer that an operator has stopped.
+            const bool once =
+                command.what == protocol::Action::acknowledge_errors || command.what == protocol::Action::start_print;
             protocol::append_action(session.command_, command.what);
             session.send_command(once ? SecuredLine::Kind::once : SecuredLine::Kind::command, now);
         }
@@ -73,24 +75,30 @@ void Session::carry_out(const feeder::Action& action, Instant now, Effects& out)
         void operator()(const feeder::End& end) const {
             session.end_ = end;
             session.inquiries_.clear();
-            session.secured_.drop_inquiries();
+            while (session.secured_.drop_inquiry()) {
+            }
             session.secured_.drop_records();
+            if (session.secured_.asks()) {
+                session.secured_.give_up();
+            }
             session.farewell_deadline_ = now + session.settings_.farewell_timeout;
         }
     };
     std::visit(Visitor{*this, now, out}, action);
 }
 
-/// A stop does not wait until somebody answers.
-void Session::give_inquiry_up(Instant now) {
-    if (!secured_.syncing() || secured_.current().kind != SecuredLine::Kind::inquiry) {
+/// A stop does not wait until a printer answers that has fallen silent. What was asked is lost: on_time() tells the
+/// feeder.
+void Session::give_inquiries_up(Instant now) {
+    if (!secured_.syncing() || !secured_.asks()) {
         return;
     }
     secured_.give_up();
     for (Inquiry& inquiry : inquiries_) {
-        if (inquiry.what == secured_.current().what) {
-            inquiry.deadline = now; // on_time() tells the feeder
-        }
+        inquiry.deadline = now;
+    }
+    while (const auto what = secured_.drop_inquiry()) {
+        inquiries_.push_back({*what, now});
     }
 }
 

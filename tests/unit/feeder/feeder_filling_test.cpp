@@ -283,6 +283,44 @@ TEST(FeederFilling, shouldWaitForTheStart) {
     story.expect("?RS; ?SM; notice: printing");
 }
 
+/// On a serial line `!GO` may get lost.
+TEST(FeederFilling, shouldStartAPrinterAgainThatStandsWithTheWholeFill) {
+    Story story = reach(Phase::starting);
+    story.take();
+    story.sm(3, 77, 104);
+    story.sm(3, 77, 104);
+    story.take();
+    story.now += seconds{1};
+    story.rs(State::ready_to_print);
+    EXPECT_NE(story.take().find("!GO"), std::string::npos);
+    story.rs(State::ready_to_print);
+    EXPECT_EQ(story.take().find("!GO"), std::string::npos) << "not so soon";
+    story.now += seconds{1};
+    story.rs(State::ready_to_print);
+    EXPECT_NE(story.take().find("!GO"), std::string::npos);
+}
+
+/// It may have begun, and an operator may have stopped it: that has emptied the FIFO.
+TEST(FeederFilling, shouldNotStartAPrinterAgainThatWasStopped) {
+    Story story = reach(Phase::starting);
+    story.take();
+    story.sm(3, 77, 104);
+    story.sm(0, 77, 0);
+    story.take();
+    story.now += seconds{1};
+    story.rs(State::ready_to_print);
+    EXPECT_EQ(story.take().find("!GO"), std::string::npos);
+}
+
+TEST(FeederFilling, shouldNotStartAPrinterAgainByAnAnswerFromBeforeTheStart) {
+    Story story = reach(Phase::starting);
+    story.take();
+    story.sm(3, 77, 104);
+    story.now += seconds{1};
+    story.rs(State::ready_to_print);
+    EXPECT_EQ(story.take().find("!GO"), std::string::npos) << "=SM may be one inquiry old";
+}
+
 TEST(FeederFilling, shouldGiveUpAPrinterThatDoesNotStart) {
     Story story = reach(Phase::starting);
     story.rs(State::ready_to_print);

@@ -147,7 +147,8 @@ TEST_F(SecuredLineTest, shouldSendOnlyCommandsInTheEnd) {
     add(Kind::inquiry, "^0?SM\r");
     add(Kind::command, "^0!ST\r");
     line_.drop_records();
-    line_.drop_inquiries();
+    EXPECT_EQ(line_.drop_inquiry(), Parameter::SM);
+    EXPECT_EQ(line_.drop_inquiry(), std::nullopt);
     EXPECT_EQ(begin(), "^0!ST");
     EXPECT_EQ(line_.on_right(now_), Step::next);
     EXPECT_EQ(begin(), "nothing");
