@@ -66,7 +66,8 @@ void Session::take_unannounced(const protocol::Frame& frame, Instant now, Action
     }
     const protocol::Message message = protocol::parse_message(frame, settings_.escapes);
     const auto* const machine = std::get_if<protocol::MachineStatus>(&message);
-    if (machine != nullptr && machine->machine == protocol::MachineState::standby && answered(Parameter::RS)) {
+    if (machine != nullptr && machine->machine == protocol::MachineState::standby) {
+        static_cast<void>(answered(Parameter::RS)); // nothing else has been asked yet
         feeder_.on_machine_status(*machine, now, actions);
     } else if (secured_.is(*what) && ++unannounced_ == enough) {
         feeder_.on_not_secured(actions);
@@ -100,9 +101,8 @@ void Session::settle_frame(SecuredLine::Step step, Instant now, Actions& actions
         send_announced(now);
         return;
     case SecuredLine::Step::lost:
-        if (answered(secured_.current().what)) {
-            time_out(secured_.current().what, now, actions);
-        }
+        static_cast<void>(answered(secured_.current().what));
+        time_out(secured_.current().what, now, actions);
         return;
     case SecuredLine::Step::unproven:
         secured_.drop_records();

@@ -236,6 +236,21 @@ TEST(FeederEveryPhase, shouldBelieveAStateThatNobodyKnowsOnlyWhenItStays) {
     story.expect(ended(OutcomeCode::not_ready, "unknown, error 0"));
 }
 
+TEST(FeederEveryPhase, shouldWaitForTheFillAsLongAsRecordsArrive) {
+    Story story = reach(Phase::verifying);
+    const Duration nearly = FeederSettings{}.verify_timeout - std::chrono::milliseconds{1};
+    for (int i = 0; i < 3; ++i) {
+        story.wait(nearly);
+        EXPECT_EQ(story.phase(), Phase::verifying);
+        story.feeder.on_proven_record(story.now);
+    }
+    story.wait(2 * nearly);
+    EXPECT_EQ(story.phase(), Phase::stopping);
+    story.feeder.on_proven_record(story.now);
+    story.wait(std::chrono::minutes{1});
+    EXPECT_EQ(story.phase(), Phase::ended) << "that changes nothing later";
+}
+
 TEST(FeederEveryPhase, shouldEndWhenThePrinterAnswersWithoutTheCrcThatWasAskedFor) {
     Story story = reach(Phase::identifying);
     story.take();

@@ -201,6 +201,17 @@ TEST_F(SecuredSessionTest, shouldUnderstandAWordWithALength) {
     EXPECT_EQ(last_, records);
 }
 
+/// Each record takes so long that the fill outlasts the time-out for it.
+TEST_F(SecuredSessionTest, shouldFillThePrinterHoweverLongThatTakes) {
+    fate_ = [this](const std::string& frame) {
+        host_.now += frame.starts_with("^0=MR") ? milliseconds{150} : milliseconds{0};
+        return Fate::arrives;
+    };
+    print_through(0);
+    EXPECT_EQ(last_, records);
+    EXPECT_GT(host_.now - Instant{}, secured_settings().feeder.verify_timeout);
+}
+
 TEST_F(SecuredSessionTest, shouldUnderstandAWordThatIsFilledWithBlanks) {
     fate_ = [](const std::string&) { return Fate::filled_word; };
     print_through(0);
@@ -250,6 +261,55 @@ TEST_F(SecuredSessionTest, shouldBelieveStandbyWithoutCrc) {
     host_.connect();
     host_.receive("^0=RS0\t1\t0\t0\t0\t0\r");
     EXPECT_NE(host_.story().find("not_ready"), std::string::npos) << "at once";
+}
+
+TEST_F(SecuredSessionTest, shouldNotHeedWhatIsNoAnswerBeforeAnythingIsSecured) {
+    host_.connect();
+    static_cast<void>(host_.sent());
+    host_.receive("^0!GO\r^0=ZZ1\r^0=SM256\t0\t0\t0\t1\r");
+    EXPECT_EQ(host_.session.statistics().frames_unexpected, 3U);
+    EXPECT_EQ(host_.session.feeder().phase(), feeder::Phase::identifying);
+}
+
+TEST_F(SecuredSessionTest, shouldAskNothingMoreAtTheEnd) {
+    host_.connect();
+    static_cast<void>(host_.sent());
+    host_.receive("^0!OK\r" + announced("^0=RS2\t5\t0\t0\t0\t0"));
+    EXPECT_NE(host_.sent().find("^0?VS"), std::string::npos) << "and the job's name waits";
+    host_.stop();
+    EXPECT_NE(host_.story().find("close"), std::string::npos);
+    EXPECT_EQ(host_.sent(), "");
+}
+
+/// The last stop is repeated until the printer has it, though the run has ended for want of an answer.
+TEST_F(SecuredSessionTest, shouldStopAPrinterThatWasSilentBeforeItGoes) {
+    print_through(0);
+    bool back = false;
+    fate_ = [&](const std::string& frame) {
+        back = back || frame == "^0!ST";
+        return back ? Fate::arrives : Fate::lost;
+    };
+    EXPECT_NE(wait_for_end().find("no_answer"), std::string::npos);
+    EXPECT_FALSE(printing_);
+    EXPECT_GE(frames_.find("^0!ST\n", frames_.find("^0!ST\n") + 1), frames_.find("^0!ST\n"));
+}
+
+TEST_F(SecuredSessionTest, shouldNotGiveUpWhatIsNoInquiryWhenItIsToStop) {
+    fate_ = [](const std::string& frame) { return frame == "^0!GO" ? Fate::lost : Fate::arrives; };
+    arm(records);
+    std::string frames;
+    for (int i = 0; i < 200 && frames.find("^0!GO") == std::string::npos; ++i) {
+        frames += answer_all();
+        host_.wake();
+    }
+    fate_ = [](const std::string&) { return Fate::lost; };
+    static_cast<void>(answer_all());
+    host_.wait(milliseconds{400});
+    EXPECT_EQ(answer_all().substr(0, 3), "^0?") << "put in between";
+    host_.stop();
+    EXPECT_EQ(answer_all(), "");
+    fate_ = [](const std::string&) { return Fate::arrives; };
+    EXPECT_NE(wait_for_end().find("stop_requested"), std::string::npos);
 }
 
 TEST_F(SecuredSessionTest, shouldNotWaitForAnAnswerThatNobodyWantsAnyMore) {

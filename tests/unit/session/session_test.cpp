@@ -115,6 +115,23 @@ TEST(Session, shouldAskAgainWhenAnAnswerIsLost) {
 }
 
 /// Answers come in the order of the inquiries: a `=RS` shows that the `=SM` before it will not come any more.
+/// Nobody knows whether a machine in such a state prints; at the start it is told.
+TEST(Session, shouldNotBelieveAStateThatTheManualDoesNotNameWhileItPrints) {
+    const auto pages = make_pages(1, 3, 3, plain_text);
+    Conversation host;
+    host.print(pages);
+    const auto before = host.session.statistics().frames_unexpected;
+    host.receive("^0=RS2\t7\t0\t0\t0\t0\r");
+    EXPECT_EQ(host.session.feeder().phase(), feeder::Phase::printing);
+    EXPECT_EQ(host.session.statistics().frames_unexpected, before + 1);
+    Conversation start;
+    start.connect();
+    for (int i = 0; i < 4; ++i) {
+        start.receive("^0=RS2\t7\t0\t0\t0\t0\r");
+    }
+    EXPECT_NE(start.story().find("not_ready (unknown"), std::string::npos);
+}
+
 TEST(Session, shouldForgetTheInquiriesBeforeAnAnsweredStatus) {
     const auto pages = thousand_records();
     Conversation host;
