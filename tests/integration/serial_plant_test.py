@@ -13,7 +13,7 @@ class SerialPlant(plant_test.PlantCase):
     def setUp(self):
         super().setUp()
         port = self.directory / "port"
-        self.printer = self.simulator("--serial", port, "--baud", 115200, "--rate", RATE, "--damage", 5000, "--cut-at-print", 200)
+        self.printer = self.simulator("--serial", port, "--baud", 115200, "--rate", RATE, "--damage", 1000, "--cut-at-print", 200)
         self.drops = self.folder("drop")
         self.service = self.make_service({
             "layouts": {"codes": {"columns": ["code"]}},
