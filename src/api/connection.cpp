@@ -258,7 +258,7 @@ void Connection::admit_request() {
     } else if (admission.answer) {
         respond(std::move(*admission.answer));
     } else if (!admission.admitted) {
-        refuse(std::move(admission.admitted.error()));
+        refuse(admission.admitted.error());
     } else {
         admitted_ = std::make_shared<Admitted>(std::move(*admission.admitted));
         start_body();

@@ -8,11 +8,6 @@ using protocol::printable;
 
 namespace {
 
-template <typename... Cases>
-struct Overloaded : Cases... {
-    using Cases::operator()...;
-};
-
 /// What is not a row of fields.
 struct SpecialFields {
     Json operator()(const protocol::JobCounters& message) const {
@@ -102,44 +97,60 @@ void append_words(std::string& words, const Json& json) {
     }
 }
 
+/// What a message is about, as the command table says it.
+struct Subject {
+    std::string operator()(const protocol::ActionMessage& action) const { return words(action.action); }
+    std::string operator()(const protocol::InquiryMessage& inquiry) const { return words(inquiry.parameter) + '?'; }
+    std::string operator()(const protocol::ScriptLine& line) const {
+        return line.is_begin() ? "a script begins" : line.is_end() ? "a script ends" : "script";
+    }
+    std::string operator()(const protocol::UnknownMessage& /*message*/) const { return "unknown command"; }
+    std::string operator()(const protocol::MalformedMessage& /*message*/) const { return "not readable"; }
+    std::string operator()(const protocol::MailRecord& /*message*/) const { return words(protocol::Parameter::MR); }
+    std::string operator()(const protocol::FileBlock& /*message*/) const { return words(protocol::FileCommand::FT); }
+    std::string operator()(const protocol::DirectoryBlock& /*message*/) const { return words(protocol::FileCommand::DI); }
+    std::string operator()(const protocol::JobCounters& /*message*/) const { return words(protocol::Parameter::AC); }
+    std::string operator()(const protocol::CounterReset& /*message*/) const { return words(protocol::Parameter::RC); }
+    std::string operator()(const protocol::ExternText& /*message*/) const { return words(protocol::Parameter::ET); }
+    std::string operator()(const protocol::WysiwygLine& /*message*/) const { return words(protocol::Parameter::GW); }
+    std::string operator()(const protocol::ErrorListBlock& block) const { return words(block.list); }
+    std::string operator()(const protocol::EventListBlock& block) const { return words(block.list); }
+    template <protocol::DescribedParameter T>
+    std::string operator()(const T& /*message*/) const {
+        return words(T::parameter);
+    }
+    template <protocol::DescribedFile T>
+    std::string operator()(const T& /*message*/) const {
+        return words(T::command);
+    }
+
+  private:
+    template <typename Command>
+    static std::string words(Command command) {
+        return std::string{protocol::description(command)};
+    }
+};
+
 std::string what_of(const protocol::Message& message) {
-    using protocol::description;
-    return std::visit(
-        Overloaded{
-            [](const protocol::ActionMessage& action) {
-        return std::string{description(action.action)}; },
-            [](const protocol::InquiryMessage& inquiry) {
-        return std::string{description(inquiry.parameter)} + '?'; },
-            [](const protocol::ScriptLine& line) {
-        return std::string{line.is_begin() ? "a script begins" : line.is_end() ? "a script ends" : "script"};
-            },
-            [](const protocol::UnknownMessage&) {
-        return std::string{"unknown command"}; },
-            [](const protocol::MalformedMessage&) {
-        return std::string{"not readable"}; },
-            [](const protocol::MailRecord&) {
-        return std::string{description(protocol::Parameter::MR)}; },
-            [](const protocol::FileBlock&) {
-        return std::string{description(protocol::FileCommand::FT)}; },
-            [](const protocol::DirectoryBlock&) {
-        return std::string{description(protocol::FileCommand::DI)}; },
-            [](const protocol::JobCounters&) {
-        return std::string{description(protocol::Parameter::AC)}; },
-            [](const protocol::CounterReset&) {
-        return std::string{description(protocol::Parameter::RC)}; },
-            [](const protocol::ExternText&) {
-        return std::string{description(protocol::Parameter::ET)}; },
-            [](const protocol::WysiwygLine&) {
-        return std::string{description(protocol::Parameter::GW)}; },
-            []<typename Block>(const Block& /*message*/) requires requires { Block::list;
+    return std::visit(Subject{}, message);
 }
-{ return std::string{description(Block::list)}; }
-, []<protocol::DescribedParameter T>(const T& /*message*/) { return std::string{description(T::parameter)}; },
-    []<protocol::DescribedFile T>(const T& /*message*/) { return std::string{description(T::command)}; },
-} // namespace
-,
-        message);
-} // namespace linefeed::printer
+
+/// The fields of every kind of message.
+struct Fields {
+    Json operator()(const protocol::MachineStatus& status) const {
+        Json fields = fields_of<protocol::MachineStatus>(status);
+        fields["error"] = to_json(status.error);
+        return fields;
+    }
+    template <typename T>
+    Json operator()(const T& message) const {
+        if constexpr (protocol::DescribedMessage<T>) {
+            return fields_of<T>(message);
+        } else {
+            return SpecialFields{}(message);
+        }
+    }
+};
 
 } // namespace
 
@@ -172,19 +183,7 @@ Json event_json(const protocol::EventEntry& entry) {
 }
 
 Json fields_of(const protocol::Message& message) {
-    return std::visit(
-        Overloaded{[](const protocol::MachineStatus& status) {
-        Json fields = fields_of<protocol::MachineStatus>(status);
-        fields["error"] = to_json(status.error);
-        return fields;
-                   },
-                   []<protocol::DescribedMessage T>(const T& described) {
-        return fields_of<T>(described); },
-                   []<typename T>(const T& special) requires(!protocol::DescribedMessage<T>) {
-                       return SpecialFields{}(special);
-}
-},
-        message);
+    return std::visit(Fields{}, message);
 }
 
 std::string command_of(const protocol::Message& message) {

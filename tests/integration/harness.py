@@ -6,6 +6,7 @@ never what linefeed says about itself.
 
 import contextlib
 import csv
+import io
 import itertools
 import json
 import os
@@ -102,8 +103,8 @@ class Simulator:
 
     def prints(self):
         """(number, text) of everything on the tape so far, complete lines only."""
-        text = self.tape_file.read_text(encoding="utf-8")
-        rows = list(csv.reader(text[:text.rfind("\n") + 1].splitlines(keepends=True)))
+        tape = self.tape_file.read_bytes()
+        rows = list(csv.reader(io.StringIO(tape[:tape.rfind(b"\n") + 1].decode("utf-8"), newline="")))
         return [(int(number), what) for _, number, what in rows[1:]]
 
     def wait_for_prints(self, count, patience_s=PATIENCE_S):
