@@ -108,7 +108,9 @@ struct Subject {
     std::string operator()(const protocol::MalformedMessage& /*message*/) const { return "not readable"; }
     std::string operator()(const protocol::MailRecord& /*message*/) const { return words(protocol::Parameter::MR); }
     std::string operator()(const protocol::FileBlock& /*message*/) const { return words(protocol::FileCommand::FT); }
-    std::string operator()(const protocol::DirectoryBlock& /*message*/) const { return words(protocol::FileCommand::DI); }
+    std::string operator()(const protocol::DirectoryBlock& /*message*/) const {
+        return words(protocol::FileCommand::DI);
+    }
     std::string operator()(const protocol::JobCounters& /*message*/) const { return words(protocol::Parameter::AC); }
     std::string operator()(const protocol::CounterReset& /*message*/) const { return words(protocol::Parameter::RC); }
     std::string operator()(const protocol::ExternText& /*message*/) const { return words(protocol::Parameter::ET); }
@@ -124,7 +126,7 @@ struct Subject {
         return words(T::command);
     }
 
-  private:
+private:
     template <typename Command>
     static std::string words(Command command) {
         return std::string{protocol::description(command)};

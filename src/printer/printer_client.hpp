@@ -9,6 +9,7 @@
 #include "protocol/messages.hpp"
 #include "protocol/profile.hpp"
 #include "protocol/secured_line.hpp"
+#include "protocol/secured_reader.hpp"
 
 #include <boost/asio/io_context.hpp>
 
@@ -112,8 +113,8 @@ private:
                                      const Listener& listener);
     [[nodiscard]] Heard take_proven(const protocol::Frame& frame, const protocol::Message& message,
                                     const Listener& listener);
-    [[nodiscard]] Heard take_unannounced(const protocol::Frame& frame, const protocol::Message& message,
-                                         const Listener& listener);
+    [[nodiscard]] Heard take_standby(const protocol::Frame& frame, const protocol::Message& message,
+                                     const Listener& listener);
     void step(protocol::SecuredLine::Step step);
     [[nodiscard]] bool write(const std::string& bytes);
     [[nodiscard]] std::string_view read(Clock::time_point deadline);
@@ -130,10 +131,8 @@ private:
     ConversationOddities oddities_;
     bool secured_;
     protocol::SecuredLine line_;
-    bool to_send_ = false;                       ///< what the line announces has to go out
-    std::optional<std::uint32_t> announced_crc_; ///< of the next frame from the printer
-    bool secured_once_ = false;                  ///< the printer has shown that it knows CRC32
-    int unannounced_ = 0;                        ///< frames before that
+    bool to_send_ = false; ///< what the line announces has to go out
+    protocol::SecuredReader line_reader_;
     Observer observer_ = [](bool, std::string_view) {};
     bool open_ = false;
     char last_byte_ = '\0';

@@ -1,7 +1,6 @@
 // Secured transmission besides the feeding (protocol, section 6): each frame is announced by its CRC32, the printer
 // says whether it was right, and of its own frames only those count that were announced and are right.
 #include "printer/printer_client.hpp"
-#include "protocol/crc32.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -12,6 +11,7 @@ using protocol::Action;
 using protocol::Parameter;
 using protocol::SecuredLine;
 using Kind = SecuredLine::Kind;
+using Word = protocol::SecuredReader::Word;
 
 namespace {
 
@@ -70,7 +70,6 @@ bool PrinterClient::exchange(std::string_view frame, const Listener& listener, D
     line_.add(secured_frame(frame));
     static_cast<void>(line_.begin());
     to_send_ = true;
-    announced_crc_.reset();
     bool done = false;
     bool answered = false;
     const bool proven = settle([&](const protocol::Message& message, std::string_view raw) {
@@ -80,8 +79,7 @@ bool PrinterClient::exchange(std::string_view frame, const Listener& listener, D
         return heard;
     });
     if (frame == power_off) {
-        secured_once_ = false; // in standby it knows nothing of it
-        unannounced_ = 0;
+        line_reader_.forget();
     }
     if (done || listener == nullptr) {
         return done || proven;
@@ -94,7 +92,6 @@ bool PrinterClient::exchange(std::string_view frame, const Listener& listener, D
 bool PrinterClient::settle(const Listener& listener) {
     constexpr auto at_least = std::chrono::milliseconds{20};
     const Duration longest_frame = time_on_line(protocol::max_frame_bytes);
-    bool proven = true;
     const auto latest = Clock::now() + longest_frame + settings_.reply_timeout;
     auto heard_at = Clock::now() + time_on_line(line_.current().bytes.size());
     while (open_ && line_.busy() && Clock::now() < heard_at + settings_.reply_timeout) {
@@ -114,9 +111,9 @@ bool PrinterClient::settle(const Listener& listener) {
     }
     if (line_.busy()) {
         line_.give_up();
-        proven = false;
+        return false;
     }
-    return proven && line_.proven();
+    return line_.proven();
 }
 
 void PrinterClient::step(SecuredLine::Step step) {
@@ -129,30 +126,33 @@ PrinterClient::Heard PrinterClient::take_secured(const protocol::Frame& frame, c
     if (frame.group == protocol::Group::file) {
         return listener == nullptr ? Heard::ignored : listener(message, frame.raw);
     }
-    if (const auto* const next = std::get_if<protocol::NextCrc>(&message)) {
-        announced_crc_ = next->crc;
-        return Heard::ignored;
-    }
-    const auto announced = std::exchange(announced_crc_, std::nullopt);
-    const auto* const action = std::get_if<protocol::ActionMessage>(&message);
-    if (action != nullptr && action->action == Action::crc_ok) {
-        secured_once_ = true;
+    const Word word = line_reader_.read(frame, line_);
+    oddities_.unsecured = line_reader_.unsecured();
+    switch (word) {
+    case Word::announcement:
+        break;
+    case Word::right:
         step(line_.on_right(now()));
-        return Heard::ignored;
-    }
-    if (std::holds_alternative<protocol::CrcFailed>(message)) {
-        secured_once_ = true;
+        break;
+    case Word::refused:
         step(line_.on_refused());
-        return Heard::ignored;
-    }
-    if (announced && protocol::is_announced_by(frame.raw, *announced)) {
-        secured_once_ = true;
-        oddities_.unsecured = false;
+        break;
+    case Word::proven:
         return take_proven(frame, message, listener);
+    case Word::standby:
+        return take_standby(frame, message, listener);
+    case Word::damaged:
+        oddities_.damaged_bytes += frame.raw.size();
+        line_.on_echo(frame.raw);
+        break;
+    case Word::bare:
+        line_.on_echo(frame.raw);
+        if (oddities_.unsecured) {
+            line_.clear();
+        }
+        break;
     }
-    line_.on_echo(frame.raw);
-    oddities_.damaged_bytes += announced ? frame.raw.size() : 0;
-    return announced || secured_once_ ? Heard::ignored : take_unannounced(frame, message, listener);
+    return Heard::ignored;
 }
 
 PrinterClient::Heard PrinterClient::take_proven(const protocol::Frame& frame, const protocol::Message& message,
@@ -171,17 +171,10 @@ PrinterClient::Heard PrinterClient::take_proven(const protocol::Frame& frame, co
     return heard;
 }
 
-/// A printer in standby answers without CRC32 (protocol, section 1), and so does one that does not know it. An answer
-/// whose announcement got lost looks the same, but not several times.
-PrinterClient::Heard PrinterClient::take_unannounced(const protocol::Frame& frame, const protocol::Message& message,
-                                                     const Listener& listener) {
-    constexpr int enough = 3;
-    const auto* const machine = std::get_if<protocol::MachineStatus>(&message);
-    const bool standby = machine != nullptr && machine->machine == protocol::MachineState::standby;
-    const Heard heard = standby && listener != nullptr ? listener(message, frame.raw) : Heard::ignored;
-    unannounced_ += standby ? 0 : 1;
-    oddities_.unsecured = unannounced_ >= enough;
-    if (heard == Heard::done || oddities_.unsecured) {
+PrinterClient::Heard PrinterClient::take_standby(const protocol::Frame& frame, const protocol::Message& message,
+                                                 const Listener& listener) {
+    const Heard heard = listener == nullptr ? Heard::ignored : listener(message, frame.raw);
+    if (heard == Heard::done) {
         line_.clear();
     }
     return heard;

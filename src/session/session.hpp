@@ -9,6 +9,7 @@
 #include "protocol/frame_decoder.hpp"
 #include "protocol/messages.hpp"
 #include "protocol/secured_line.hpp"
+#include "protocol/secured_reader.hpp"
 #include "session/frame_observer.hpp"
 #include "session/outbox.hpp"
 #include "session/page_window.hpp"
@@ -115,7 +116,6 @@ private:
     // session_secured.cpp: with CRC32
     void take_secured(const protocol::Frame& frame, Instant now, feeder::Actions& actions);
     void take_proven(const protocol::Frame& frame, Instant now, feeder::Actions& actions);
-    void take_unannounced(const protocol::Frame& frame, Instant now, feeder::Actions& actions);
     void settle_frame(protocol::SecuredLine::Step step, Instant now, feeder::Actions& actions);
     void begin_frame(Instant now);
     void send_announced(Instant now);
@@ -149,9 +149,7 @@ private:
     std::string command_; ///< the one that is being made
     PageWindow pages_;
     protocol::SecuredLine secured_;
-    std::optional<std::uint32_t> announced_crc_;      ///< of the next frame from the printer
-    bool secured_once_ = false;                       ///< the printer has shown that it knows CRC32
-    int unannounced_ = 0;                             ///< answers before that
+    protocol::SecuredReader secured_reader_;
     Instant line_free_at_{};                          ///< all that was sent has gone over the line by then
     std::optional<RecordsWritten> staged_records_;    ///< in the outbox, for the next write
     std::optional<RecordsWritten> records_under_way_; ///< with the write under way

@@ -1,76 +1,40 @@
 // The conversation with CRC32, both ways (protocol, section 6): what the printer says of our frames, and which of its
 // own are right.
-#include "protocol/crc32.hpp"
 #include "session/session.hpp"
-
-#include <utility>
 
 namespace linefeed::session {
 
 using feeder::Actions;
-using protocol::Group;
 using protocol::Parameter;
 using protocol::SecuredLine;
-
-namespace {
-
-bool is_parameter(const protocol::Frame& frame, Parameter what) {
-    return frame.group == Group::parameter && frame.payload.starts_with(protocol::code(what));
-}
-
-/// `!OK`, also with one byte damaged: of a frame that it did not check the printer says nothing, and `=FC` is longer.
-/// Taken for right wrongly, a refused record is missing, and the printer stops at the gap.
-bool is_right(const protocol::Frame& frame) {
-    const std::string_view word = frame.payload.substr(0, frame.payload.find_last_not_of(' ') + 1);
-    if (word.size() != 2) {
-        return false;
-    }
-    const int differing = (frame.group != Group::action ? 1 : 0) + (word[0] != 'O' ? 1 : 0) + (word[1] != 'K' ? 1 : 0);
-    return differing <= 1;
-}
-
-} // namespace
+using Word = protocol::SecuredReader::Word;
 
 void Session::take_secured(const protocol::Frame& frame, Instant now, Actions& actions) {
-    if (is_parameter(frame, Parameter::NR)) {
-        const protocol::Message message = protocol::parse_message(frame, settings_.escapes);
-        const auto* const next = std::get_if<protocol::NextCrc>(&message);
-        announced_crc_ = next == nullptr ? std::nullopt : std::optional{next->crc};
+    switch (secured_reader_.read(frame, secured_)) {
+    case Word::announcement:
         return;
-    }
-    const auto announced = std::exchange(announced_crc_, std::nullopt);
-    if (is_right(frame)) {
-        secured_once_ = true;
+    case Word::right:
         settle_frame(secured_.on_right(now), now, actions);
-    } else if (is_parameter(frame, Parameter::FC)) {
+        return;
+    case Word::refused:
         settle_frame(secured_.on_refused(), now, actions);
-    } else if (announced && protocol::is_announced_by(frame.raw, *announced)) {
-        secured_once_ = true;
+        return;
+    case Word::proven:
         take_proven(frame, now, actions);
-    } else {
+        return;
+    case Word::standby:
+        static_cast<void>(answered(Parameter::RS)); // nothing else has been asked yet
+        feeder_.on_machine_status(std::get<protocol::MachineStatus>(protocol::parse_message(frame, settings_.escapes)),
+                                  now, actions);
+        return;
+    case Word::damaged:
+    case Word::bare:
         secured_.on_echo(frame.raw);
         ++statistics_.frames_unexpected;
-        if (!announced && !secured_once_) {
-            take_unannounced(frame, now, actions);
+        if (secured_reader_.unsecured()) {
+            feeder_.on_not_secured(actions);
         }
-    }
-}
-
-/// A printer in standby answers without CRC32 (protocol, section 1), and so does one that does not know it. An answer
-/// whose announcement got lost looks the same, but not several times.
-void Session::take_unannounced(const protocol::Frame& frame, Instant now, Actions& actions) {
-    constexpr int enough = 3;
-    const auto what = protocol::parameter_from_code(frame.payload.substr(0, 2));
-    if (frame.group != Group::parameter || !what) {
         return;
-    }
-    const protocol::Message message = protocol::parse_message(frame, settings_.escapes);
-    const auto* const machine = std::get_if<protocol::MachineStatus>(&message);
-    if (machine != nullptr && machine->machine == protocol::MachineState::standby) {
-        static_cast<void>(answered(Parameter::RS)); // nothing else has been asked yet
-        feeder_.on_machine_status(*machine, now, actions);
-    } else if (secured_.is(*what) && ++unannounced_ == enough) {
-        feeder_.on_not_secured(actions);
     }
 }
 
