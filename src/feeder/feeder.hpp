@@ -196,6 +196,7 @@ private:
     void verify(Instant now, Actions& out);
     void go(Instant now, Actions& out);
     void start_mail(Instant now, Actions& out);
+    void stands_after_go(Instant now);
     void go_again(Instant now, Actions& out);
     void start_answered(Instant now, Actions& out);
     [[nodiscard]] bool is_allowed(const protocol::PrinterError& error) const;
@@ -318,7 +319,8 @@ private:
     Instant status_due_{}; ///< next `?RS` while printing
     std::optional<Instant> go_due_;
     Instant go_sent_at_{};
-    std::uint32_t entries_filled_ = 0; ///< as reported before `!GO`
+    std::optional<int> go_again_at_read_; ///< of `=SM` in this phase, if the fill is untouched then
+    std::uint32_t entries_filled_ = 0;    ///< as reported before `!GO`
     Instant stop_sent_at_{};
 
     bool taking_over_ = false;

@@ -264,14 +264,20 @@ void Feeder::go(Instant now, Actions& out) {
 }
 
 /// It stands. `!GO` may be lost, or an operator may have stopped the printer already, which empties the FIFO; behind a
-/// stop it must not start again.
+/// stop it must not start again. Of what is asked from now on, the second `=SM` tells.
+void Feeder::stands_after_go(Instant now) {
+    if (!go_again_at_read_ && now - go_sent_at_ >= settings_.go_repeat) {
+        go_again_at_read_ = mail_reads_ + mail_outstanding_ + 2;
+    }
+    ask_later(Parameter::RS, now);
+}
+
 void Feeder::go_again(Instant now, Actions& out) {
-    const bool untouched = mail_reads_ >= 2 && mail_.entries > 0 && mail_.entries == entries_filled_;
-    if (untouched && now - go_sent_at_ >= settings_.go_repeat) {
+    go_again_at_read_.reset();
+    if (mail_.entries > 0 && mail_.entries == entries_filled_) {
         out.push_back(Command{protocol::Action::start_print});
         go_sent_at_ = now;
     }
-    ask_later(Parameter::RS, now);
 }
 
 /// The first products may be through before the answer that it prints: the refill does not wait for that.
@@ -281,6 +287,9 @@ void Feeder::start_mail(Instant now, Actions& out) {
     }
     if (!stop_would_show() || stop_point_stands()) {
         static_cast<void>(follow(now, out));
+    }
+    if (phase_ == Phase::starting && go_again_at_read_ && mail_reads_ >= *go_again_at_read_) {
+        go_again(now, out);
     }
     poll_on(now);
 }
@@ -317,7 +326,7 @@ void Feeder::start_answered(Instant now, Actions& out) {
         begin_judging(now, out); // a short run that is over already
         return;
     }
-    go_again(now, out);
+    stands_after_go(now);
 }
 
 } // namespace linefeed::feeder

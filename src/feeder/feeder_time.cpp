@@ -13,6 +13,7 @@ void Feeder::enter(Phase phase, Instant now, Duration timeout) {
     stood_ = false;
     retry_at_.reset();
     go_due_.reset();
+    go_again_at_read_.reset();
     deadline_.reset();
     if (timeout != Duration::max()) {
         deadline_ = now + timeout;
