@@ -25,6 +25,9 @@ public:
     void product_without_record(bool explained);
     void buffer_overfull();
     void numbers_out_of_order();
+    /// The number of the next record does not follow on the last.
+    void record_missing(bool next_is_intact);
+    [[nodiscard]] bool is_intact(RecordNumber number, std::string_view text);
     /// The process is gone before it could write down what it knew.
     void host_died();
 

@@ -202,6 +202,9 @@ void Line::carry_out(simulator::Effect& effect) {
         if (code == protocol::error_code::number_wrong) {
             judge_.numbers_out_of_order();
         }
+        if (code == protocol::error_code::number_not_consecutive && !others_interfere_) {
+            judge_.record_missing(next_is_intact_);
+        }
     } else if (const auto* state = std::get_if<simulator::StateChanged>(&effect)) {
         context_.trace.note(context_.now, "machine state", static_cast<std::uint64_t>(state->machine),
                             state->cover_open ? 1 : 0);
@@ -240,6 +243,8 @@ void Line::move_belt() {
 }
 
 void Line::product() {
+    const simulator::MailSlot* const next = printer_->fifo().loaded();
+    next_is_intact_ = context_.scenario.crc && next != nullptr && judge_.is_intact(next->number, next->text);
     const auto outcome = printer_->print_go(context_.now);
     product_due_ = std::max(context_.now + step(), belt_stands_until_);
     carry_out();
