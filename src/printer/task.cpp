@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <initializer_list>
 
 namespace linefeed::printer {
 
@@ -49,18 +50,24 @@ std::string check(const Argument& argument, const Json& value) {
            std::to_string(argument.largest);
 }
 
+bool is_one_of(const Command& command, std::initializer_list<Action> actions) {
+    return command.group == Group::action && std::ranges::any_of(actions, [&command](Action action) {
+               return command.index == static_cast<std::uint8_t>(action);
+           });
+}
+
+bool is_spoiling(const Command& command) {
+    return is_one_of(command, {Action::nozzle_close, Action::motor_close, Action::reload_fonts});
+}
+
 bool is_feeding(const Command& command) {
-    const auto action = [&command](Action wanted) {
-        return command.group == Group::action && command.index == static_cast<std::uint8_t>(wanted);
-    };
     const auto transfer = [&command](Parameter wanted) {
         return command.group == Group::parameter && command.index == static_cast<std::uint8_t>(wanted);
     };
     const auto file = [&command](protocol::FileCommand wanted) {
         return command.group == Group::file && command.index == static_cast<std::uint8_t>(wanted);
     };
-    return action(Action::start_print) || action(Action::stop_print) || action(Action::nozzle_close) ||
-           action(Action::motor_close) || action(Action::reload_fonts) || transfer(Parameter::MR) ||
+    return is_one_of(command, {Action::start_print, Action::stop_print}) || transfer(Parameter::MR) ||
            transfer(Parameter::CM) || transfer(Parameter::CC) || transfer(Parameter::JL) ||
            file(protocol::FileCommand::FH) || file(protocol::FileCommand::FT); // a file may be the job that prints
 }
@@ -146,7 +153,7 @@ Danger danger_of(const Command& command) {
     if (command.risk == Risk::destructive || command.group == Group::script) {
         return Danger::destructive; // a script begins with the deletion of the current job
     }
-    return is_feeding(command) ? Danger::feeding : Danger::none;
+    return is_spoiling(command) ? Danger::spoiling : is_feeding(command) ? Danger::feeding : Danger::none;
 }
 
 bool empties_fifo(const CommandId& command) {

@@ -81,6 +81,7 @@ struct Order {
 enum class Danger : std::uint8_t {
     none,        ///< may be done at any time
     feeding,     ///< starts, stops or disturbs the feeding: not while a job is on the line
+    spoiling,    ///< spoils what is being printed, whoever has started it: not while the machine prints
     destructive, ///< loses what is in the printer: neither, and needs to be confirmed
 };
 /// What is done with that command: of `^0=MR`, `^0!GO` … linefeed's own feeding lives.

@@ -9,8 +9,6 @@
 
 namespace linefeed::printer {
 
-using protocol::Action;
-
 namespace {
 
 std::vector<Task> joined(const auto& lists) {
@@ -26,16 +24,6 @@ bool may_be_done_unheard(const Task& task) {
     return std::ranges::any_of(task.uses, [](const CommandId& used) {
         return used.group == protocol::Group::file || used == CommandId{protocol::Group::action, "RM"};
     });
-}
-
-/// What would spoil a job that prints, whoever has started it.
-bool needs_standing_line(const Task& task, Danger danger) {
-    constexpr std::array spoiling{Action::nozzle_close, Action::motor_close, Action::reload_fonts};
-    const auto spoils = [&](const CommandId& used) {
-        return used.group == protocol::Group::action &&
-               std::ranges::any_of(spoiling, [&](Action action) { return used.code == code(action); });
-    };
-    return danger == Danger::destructive || std::ranges::any_of(task.uses, spoils);
 }
 
 /// Asks the machine itself.
@@ -99,7 +87,7 @@ Result<Json> carry_out(const Task& task, PrinterClient& printer, const Order& or
     if (!danger) {
         return danger.error();
     }
-    if (needs_standing_line(task, *danger)) {
+    if (*danger >= Danger::spoiling) {
         if (auto checked = check_not_printing(task, printer); !checked) {
             return checked.error();
         }

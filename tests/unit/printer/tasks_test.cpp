@@ -77,7 +77,9 @@ TEST(Tasks, shouldSendNoFileAsItIsTypedWhileAJobIsOnTheLine) {
     const Task& send = *find_task("send");
     for (const auto& [frame, danger] :
          {std::pair{"$FHFFSDISK\\\\Jobs\\\\a.job\\t1", Danger::feeding}, std::pair{"$FT1\\t0\\t", Danger::feeding},
-          std::pair{"$DFx", Danger::destructive}, std::pair{"$RFx", Danger::none}, std::pair{"?RS", Danger::none}}) {
+          std::pair{"$DFx", Danger::destructive}, std::pair{"$RFx", Danger::none}, std::pair{"?RS", Danger::none},
+          std::pair{"!GO", Danger::feeding}, std::pair{"!NC", Danger::spoiling}, std::pair{"!MC", Danger::spoiling},
+          std::pair{"!LF", Danger::spoiling}}) {
         const auto arguments = Arguments::read(send.arguments, {{"frame", frame}});
         EXPECT_EQ(danger_of(send, *arguments).value(), danger) << frame;
     }
