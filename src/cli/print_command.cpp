@@ -59,6 +59,9 @@ Result<ExitCode> PrintCommand::run(const std::filesystem::path& spool_path, cons
     if (!endpoints) {
         return endpoints.error();
     }
+    if (const auto fits = check_escapes(*spool); !fits) {
+        return fits.error();
+    }
     daemon::JobRunSettings settings = run_settings();
     settings.session.charsets = daemon::record_format(job_).charsets;
     daemon::use_line(settings, printer, *endpoints, daemon::record_bytes(job_));
@@ -74,6 +77,26 @@ Result<ExitCode> PrintCommand::run(const std::filesystem::path& spool_path, cons
     auto code = print(*spool, settings);
     import_.reset(); // before the spool
     return code;
+}
+
+/// Whether the printer knows the escapes that `^` and `\\` of the records are sent with. It is asked only if there are
+/// some; one that does not tell is taken at the word of its profile.
+Result<void> PrintCommand::check_escapes(spool::Spool& spool) const {
+    const protocol::Profile& profile = options_.layout.profile;
+    const bool trusted = profile.own.escapes || profile.escapes == protocol::EscapeMode::none;
+    const auto needed = trusted ? Result<bool>{false} : spool.has_escapes(job_.id);
+    if (!needed || !*needed) {
+        return needed ? Result<void>{} : needed.error();
+    }
+    const auto told = ask_profile(options_);
+    if (!told || told->escapes == profile.escapes) {
+        return {};
+    }
+    return Failure{FailureKind::input,
+                   options_.file.string() + " has records with ^ or \\, and the printer says that it is a " +
+                       std::string{told->name} + ", which knows no escapes: they would come out wrong. Take these " +
+                       "characters out; or, if this printer knows them, say --profile " + std::string{profile.name} +
+                       ",escapes=on"};
 }
 
 Result<RecordRange> PrintCommand::wanted_range() const {

@@ -31,6 +31,7 @@ private:
     Result<ExitCode> report(spool::Spool& spool, feeder::Outcome outcome);
     /// What --from and --to leave of the job; up to where it can reach while its end is not known. FailureKind::usage
     /// if they are wrong.
+    [[nodiscard]] Result<void> check_escapes(spool::Spool& spool) const;
     [[nodiscard]] Result<RecordRange> wanted_range() const;
 
     // print_import.cpp: the import, before and while it is printed

@@ -2,6 +2,7 @@
 
 #include "config/load.hpp"
 #include "link/printer_address.hpp"
+#include "printer/look.hpp"
 #include "printer/told_profile.hpp"
 
 #include <fstream>
@@ -20,12 +21,17 @@ bool is_address(std::string_view printer) {
     return printer.find("://") != std::string_view::npos;
 }
 
+Result<protocol::Profile> named_profile(const DirectOptions& options) {
+    return options.profile.empty() ? Result<protocol::Profile>{protocol::profiles.front()}
+                                   : protocol::parse_profile(options.profile);
+}
+
 Result<printer::ClientSettings> direct_settings(const std::string& address, const DirectOptions& options) {
     const auto parsed = link::parse_printer_address(address);
     if (!parsed) {
         return parsed.error();
     }
-    const auto profile = protocol::parse_profile(options.profile);
+    const auto profile = named_profile(options);
     if (!profile) {
         return profile.error();
     }
@@ -48,7 +54,13 @@ Result<printer::ClientSettings> direct_settings(const std::string& address, cons
 Result<std::unique_ptr<printer::PrinterClient>> connect_directly(const std::string& address,
                                                                  const DirectOptions& options) {
     const auto settings = direct_settings(address, options);
-    return settings ? printer::PrinterClient::connect(*settings) : settings.error();
+    auto printer = settings ? printer::PrinterClient::connect(*settings) : settings.error();
+    if (printer && options.profile.empty()) {
+        if (const auto told = printer::told_profile(**printer)) {
+            (*printer)->use(*told);
+        }
+    }
+    return printer;
 }
 
 Result<std::function<printer::ErrorWords(const protocol::PrinterError&)>>

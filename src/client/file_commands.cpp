@@ -56,7 +56,7 @@ printer::TransferOptions with_progress(cli::SignalWatch& signals, ProgressLine& 
 }
 
 Result<std::string> file_name_in(const PrinterOptions& options, const std::string& path) {
-    const auto profile = protocol::parse_profile(options.direct.profile);
+    const auto profile = named_profile(options.direct);
     return profile ? printer::printer_file(path, profile->escapes) : profile.error();
 }
 
@@ -96,6 +96,15 @@ Result<ExitCode> with_files(const PrinterOptions& options, const printer::Transf
 
 Result<Json> answer_of(const PrinterOptions& options, std::string_view task) {
     return task_answer({options, printer::find_task(task), {}, true});
+}
+
+/// Half a restore would be neither the one nor the other.
+Result<void> check_standing(const PrinterOptions& options) {
+    const auto status = answer_of(options, "status");
+    return status && text(*status, "machine") == to_string(protocol::MachineState::printing)
+               ? Failure{FailureKind::stopped,
+                         options.printer + ": the printer prints: stop it first; nothing is written"}
+               : Result<void>{};
 }
 
 Result<printer::Picture> picture_of(const Json& answer) {
@@ -231,6 +240,9 @@ ExitCode run_restore(const FolderOptions& options) {
                                  options.yes, options.printer.common.json);
         if (!yes || !*yes) {
             return yes ? Result<ExitCode>{ExitCode::stopped} : yes.error();
+        }
+        if (auto standing = check_standing(options.printer); !standing) {
+            return standing.error();
         }
         printer::RestoreOptions restore;
         restore.other_printer = options.other_printer;

@@ -14,6 +14,7 @@
 #include <fstream>
 #include <functional>
 #include <poll.h>
+#include <utility>
 
 namespace linefeed::client {
 
@@ -116,14 +117,25 @@ Result<void> listen_to_printer(const MonitorOptions& options, Listener& listener
             heard = listener.hear({wall_ns(), sent, std::string{bytes}, bytes.size()}, options.file);
         }
     });
+    bool answered = false;
+    std::uint64_t damaged = 0;
     do {
-        static_cast<void>(printer.ask<protocol::MachineStatus>(protocol::Parameter::RS));
-        static_cast<void>(printer.ask<protocol::MailStatus>(protocol::Parameter::SM));
+        const auto machine = printer.ask<protocol::MachineStatus>(protocol::Parameter::RS);
+        const auto mail = printer.ask<protocol::MailStatus>(protocol::Parameter::SM);
+        answered = answered || machine || mail;
         if (!printer.open()) {
             return Failure{FailureKind::unreachable, printer.settings().address + ": the connection is lost"};
         }
+        if (const auto bytes =
+                printer.oddities().damaged_bytes - std::exchange(damaged, printer.oddities().damaged_bytes);
+            bytes > 0) {
+            say("<- " + std::to_string(bytes) + " bytes that are no frame");
+        }
+        if (!machine && !mail) {
+            say("<- no answer");
+        }
     } while (heard && until.wait(options.interval));
-    return heard;
+    return answered || !heard ? heard : Failure{FailureKind::unreachable, printer.silence("?RS")};
 }
 
 std::string from_hex(std::string_view hex) {
@@ -191,7 +203,7 @@ Result<std::vector<SpokenFrame>> read_recording(const ReplayOptions& options, pr
 }
 
 Result<protocol::EscapeMode> escapes_of(const PrinterOptions& options) {
-    const auto profile = protocol::parse_profile(options.direct.profile);
+    const auto profile = named_profile(options.direct);
     return profile ? Result<protocol::EscapeMode>{profile->escapes} : profile.error();
 }
 

@@ -2,6 +2,7 @@
 #include "client/task_command.hpp"
 #include "linefeed/definitions.hpp"
 #include "printer/tasks.hpp"
+#include "protocol/profile.hpp"
 
 #include <memory>
 
@@ -38,7 +39,11 @@ void add_printer(CLI::App& app, Commands& commands) {
         ->required();
     add_common(printer, options->common);
     constexpr const char* group = "With an address";
-    printer.add_option("--profile", options->direct.profile, "Firmware profile")->capture_default_str()->group(group);
+    printer
+        .add_option("--profile", options->direct.profile,
+                    "Firmware profile: " + protocol::profile_names() +
+                        "; default: as the printer says (?VS), jet3up if it does not tell")
+        ->group(group);
     printer
         .add_option("--errors", options->direct.errors,
                     "Table of error numbers; default: /etc/linefeed/errors.yaml, if it is there")

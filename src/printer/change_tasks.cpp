@@ -5,6 +5,7 @@
 #include "printer/message_json.hpp"
 #include "printer/print_parameters.hpp"
 #include "printer/printer_commands.hpp"
+#include "printer/printer_path.hpp"
 #include "printer/tasks.hpp"
 
 #include <array>
@@ -28,12 +29,21 @@ constexpr CommandId sets(std::string_view code) {
     return {Group::parameter, code};
 }
 
-/// What the machine says behind a command.
+Failure not_done(const MachineStatus& status) {
+    return not_taken("the machine says: " + std::string{to_string(status.machine)} +
+                     (status.error.none() ? "" : ", " + describe(status.error)) +
+                     (status.cover_open ? ", cover open" : ""));
+}
+
+/// What the machine says behind a command. In standby it does nothing of it (protocol, section 1).
 Result<Json> machine_behind(PrinterClient& printer) {
     const auto status = asked<MachineStatus>(printer, Parameter::RS);
     if (!status) {
         return Failure{status.error().kind,
                        "it is sent, but nobody knows whether it has arrived: " + status.error().message};
+    }
+    if (status->machine == MachineState::standby) {
+        return not_done(*status);
     }
     return json_result(fields_of(protocol::Message{*status}));
 }
@@ -45,6 +55,28 @@ Result<Json> sent(PrinterClient& printer, const protocol::Message& message) {
 template <Action action>
 Result<Json> act(PrinterClient& printer, const Order& /*order*/) {
     return sent(printer, protocol::ActionMessage{action});
+}
+
+Result<Json> start(PrinterClient& printer, const Order& /*order*/) {
+    if (!printer.send(Action::start_print)) {
+        return not_confirmed(printer);
+    }
+    constexpr auto longest = std::chrono::seconds{1};
+    constexpr auto look_again = std::chrono::milliseconds{50};
+    const auto deadline = std::chrono::steady_clock::now() + longest;
+    while (true) {
+        const auto status = asked<MachineStatus>(printer, Parameter::RS);
+        if (!status) {
+            return status.error();
+        }
+        if (status->machine == MachineState::printing) {
+            return json_result(fields_of(protocol::Message{*status}));
+        }
+        if (std::chrono::steady_clock::now() >= deadline) {
+            return not_done(*status);
+        }
+        std::this_thread::sleep_for(look_again);
+    }
 }
 
 /// For what leads into standby or out of it: there the printer may be silent.
@@ -203,7 +235,12 @@ Result<Json> set_clock(PrinterClient& printer, const Order& order) {
 }
 
 Result<Json> set_text(PrinterClient& printer, const Order& order) {
-    const protocol::ExternText wanted{order.arguments.text("text")};
+    const auto bytes = path_bytes(order.arguments.text("text"));
+    if (!bytes) {
+        return Failure{FailureKind::input,
+                       "the text has a character that Windows-1252 does not have, and fonts neither"};
+    }
+    const protocol::ExternText wanted{*bytes};
     if (wanted.text.size() > protocol::max_extern_text || wanted.text.find('\r') != std::string::npos) {
         return Failure{FailureKind::usage, "the text must have at most " + std::to_string(protocol::max_extern_text) +
                                                " bytes, and no line end"};
@@ -223,13 +260,11 @@ Result<Json> set_text(PrinterClient& printer, const Order& order) {
         if (!now) {
             return now.error();
         }
-        const bool taken = *now == wanted;
-        if (taken || std::chrono::steady_clock::now() >= deadline) {
-            Json json = fields_of(protocol::Message{*now});
-            if (!taken) {
-                json["note"] = "the printer still shows another text";
-            }
-            return json_result(std::move(json));
+        if (*now == wanted) {
+            return json_result(fields_of(protocol::Message{*now}));
+        }
+        if (std::chrono::steady_clock::now() >= deadline) {
+            return not_taken("it shows another text: " + protocol::printable(path_text(now->text)));
         }
         std::this_thread::sleep_for(look_again);
     }
@@ -339,7 +374,7 @@ constexpr Task option_of_look(Task task) {
 }
 
 constexpr std::array list{
-    change("print start", "Start print-ready, whatever is in the FIFO", start_uses, act<Action::start_print>),
+    change("print start", "Start print-ready, whatever is in the FIFO", start_uses, start),
     change("print stop", "Stop print-ready; empties the FIFO", stop_uses, act<Action::stop_print>),
     change("nozzle open", "Open the nozzle; takes 30 to 60 s", nozzle_open_uses, act<Action::nozzle_open>),
     change("nozzle close", "Close the nozzle", nozzle_close_uses, act<Action::nozzle_close>),

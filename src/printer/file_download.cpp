@@ -106,7 +106,11 @@ private:
     Heard hear(const FileBlock& block) {
         learn_first(block.number);
         if (progress_.blocks > 0 && block.intact() && block.number == number()) {
-            // Once more, as our word about it was lost or late.
+            // Once more, as our word about it was lost or late. That word may bring the next block once more, too: it
+            // is said but once.
+            if (std::exchange(repeated_word_, true)) {
+                return Heard::ignored;
+            }
             static_cast<void>(printer_.send(Message{FileAcknowledgement{number(), FileVerdict::ok}}));
             return Heard::more;
         }
@@ -122,6 +126,7 @@ private:
             return taken.error();
         }
         attempts_ = silences_ = 0;
+        repeated_word_ = false;
         ++progress_.blocks;
         if (!options_.on_progress(progress_) && progress_.blocks < progress_.total) {
             return failed(FailureKind::stopped, "cancelled");
@@ -135,6 +140,7 @@ private:
         if (!printer_.open()) {
             return failed(FailureKind::unreachable, "the connection is broken");
         }
+        repeated_word_ = false;
         constexpr std::uint32_t silences_at_most = 3;
         silences_ = damaged_ ? 0 : silences_ + 1;
         if (silences_ == silences_at_most) {
@@ -169,7 +175,8 @@ private:
     std::uint32_t attempts_ = 0;
     std::uint32_t silences_ = 0;
     bool header_came_ = false;
-    bool damaged_ = false; ///< a block came that is no use
+    bool repeated_word_ = false; ///< about the block taken last
+    bool damaged_ = false;       ///< a block came that is no use
     bool refused_ = false;
 };
 

@@ -29,13 +29,17 @@ Result<Json> look(PrinterClient& printer, const Order& /*order*/) {
     return answer ? json_result(fields_of(*answer)) : answer.error();
 }
 
-/// With what the plant's table says.
+/// What the plant's table says.
+void add_meaning(Json& json, const protocol::PrinterError& error, const Order& order) {
+    const ErrorWords words = order.meaning(error);
+    json["meaning"] = printable(words.meaning);
+    json["advice"] = printable(words.advice);
+}
+
 Json error_json(const protocol::PrinterError& error, const Order& order) {
     Json json = to_json(error);
     if (!json.is_null()) {
-        const ErrorWords words = order.meaning(error);
-        json["meaning"] = printable(words.meaning);
-        json["advice"] = printable(words.advice);
+        add_meaning(json, error, order);
     }
     return json;
 }
@@ -88,8 +92,8 @@ Result<Json> errors(PrinterClient& printer, const Order& order) {
     }
     Json entries = Json::array();
     for (const protocol::ErrorEntry& entry : *list) {
-        Json json{{"time", to_json(entry.time)}};
-        json.update(error_json(entry.error, order));
+        Json json = listed_error_json(entry);
+        add_meaning(json, entry.error, order);
         entries.push_back(std::move(json));
     }
     return json_result({{"total", list->size()}, {"errors", std::move(entries)}});

@@ -1,5 +1,7 @@
 #include "printer/message_json.hpp"
 
+#include "printer/printer_path.hpp"
+
 #include <algorithm>
 
 namespace linefeed::printer {
@@ -22,7 +24,9 @@ struct SpecialFields {
     Json operator()(const protocol::CounterReset& message) const {
         return {{"counter", message.counter}, {"start", message.start ? Json{*message.start} : Json{}}};
     }
-    Json operator()(const protocol::ExternText& message) const { return {{"text", printable(message.text)}}; }
+    Json operator()(const protocol::ExternText& message) const {
+        return {{"text", printable(path_text(message.text))}};
+    }
     Json operator()(const protocol::WysiwygLine& message) const { return {{"bytes", message.bytes.size()}}; }
     Json operator()(const protocol::MailRecord& message) const {
         Json fields = Json::array();
@@ -40,7 +44,7 @@ struct SpecialFields {
     Json operator()(const protocol::ErrorListBlock& message) const {
         Json errors = Json::array();
         for (const protocol::ErrorEntry& entry : message.entries) {
-            errors.push_back({{"time", to_json(entry.time)}, {"error", to_json(entry.error)}});
+            errors.push_back(listed_error_json(entry));
         }
         return {{"first", message.first}, {"total", message.total}, {"errors", std::move(errors)}};
     }
@@ -169,6 +173,10 @@ Json to_json(const protocol::PrinterError& error) {
 
 Json to_json(const protocol::PrinterTime& time) {
     return to_string(time);
+}
+
+Json listed_error_json(const protocol::ErrorEntry& entry) {
+    return {{"time", to_json(entry.time)}, {"code", entry.error.code()}, {"raw", entry.error.raw}};
 }
 
 Json event_json(const protocol::EventEntry& entry) {

@@ -83,6 +83,8 @@ template <protocol::DescribedMessage T>
 [[nodiscard]] Json to_json(const protocol::PrinterError& error);
 /// "2024-05-06 07:08:09"
 [[nodiscard]] Json to_json(const protocol::PrinterTime& time);
+/// One line of the error list: its numbers are bare, and tell neither who reports it nor whether it switches off.
+[[nodiscard]] Json listed_error_json(const protocol::ErrorEntry& entry);
 /// One line of the event list.
 [[nodiscard]] Json event_json(const protocol::EventEntry& entry);
 

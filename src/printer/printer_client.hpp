@@ -93,6 +93,8 @@ public:
     [[nodiscard]] std::string frame_of(const protocol::Message& message) const;
     /// Hears from now on of everything that is sent and that comes.
     void observe(Observer observer) { observer_ = std::move(observer); }
+    /// The printer has told what it is.
+    void use(const protocol::Profile& profile) { settings_.profile = profile; }
     [[nodiscard]] const ClientSettings& settings() const { return settings_; }
     /// Why there is no answer to what was asked last, in words: `asked` e.g. "?SM".
     [[nodiscard]] std::string silence(std::string_view asked) const;

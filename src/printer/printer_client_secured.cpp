@@ -123,10 +123,10 @@ void PrinterClient::step(SecuredLine::Step step) {
 /// Takes what belongs to the transmission itself, and drops what was not announced or is damaged.
 PrinterClient::Heard PrinterClient::take_secured(const protocol::Frame& frame, const protocol::Message& message,
                                                  const Listener& listener) {
+    const Word word = line_reader_.read(frame, line_);
     if (frame.group == protocol::Group::file) {
         return listener == nullptr ? Heard::ignored : listener(message, frame.raw);
     }
-    const Word word = line_reader_.read(frame, line_);
     oddities_.unsecured = line_reader_.unsecured();
     switch (word) {
     case Word::announcement:

@@ -115,9 +115,14 @@ Result<void> PanelHold::suspend() {
             }
             client_ = *std::move(connected);
         }
-        if (client_->send(Action::user_suspend) && client_->ask<MachineStatus>(Parameter::RS)) {
-            held_.store(true, std::memory_order_relaxed);
-            return {};
+        const auto machine =
+            client_->send(Action::user_suspend) ? client_->ask<MachineStatus>(Parameter::RS) : std::nullopt;
+        if (machine) {
+            const bool standby = machine->machine == protocol::MachineState::standby; // then it does nothing of it
+            held_.store(!standby, std::memory_order_relaxed);
+            return standby ? Failure{FailureKind::stopped,
+                                     settings_.address + ": the printer is in standby: its panel is not suspended"}
+                           : Result<void>{};
         }
         if (fresh || client_->open()) {
             break; // it is there, but does not answer

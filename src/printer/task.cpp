@@ -168,7 +168,10 @@ Result<Danger> danger_of(const Task& task, const Arguments& arguments) {
     }
     if (task.sends != nullptr) {
         const auto sent = task.sends(arguments);
-        return sent ? Result<Danger>{danger_of_sent(*sent)} : sent.error();
+        const Danger danger = sent ? danger_of_sent(*sent) : Danger::none;
+        const bool unchecked =
+            danger == Danger::feeding && sent->group != Group::action; // a task of its own looks first
+        return sent ? Result<Danger>{unchecked ? Danger::spoiling : danger} : sent.error();
     }
     Danger worst = Danger::none;
     for (const CommandId& used : task.uses) {

@@ -5,6 +5,13 @@
 
 namespace linefeed::printer {
 
+std::optional<protocol::Profile> told_profile(PrinterClient& printer) {
+    const auto machine = printer.ask<protocol::MachineStatus>(protocol::Parameter::RS);
+    const bool answers = machine && machine->machine != protocol::MachineState::standby;
+    const auto version = answers ? printer.ask<protocol::VersionInfo>(protocol::Parameter::VS) : std::nullopt;
+    return version ? protocol::profile_for(version->type, version->firmware) : std::nullopt;
+}
+
 Result<protocol::Profile> ask_profile(const ClientSettings& settings) {
     const auto printer = PrinterClient::connect(settings);
     if (!printer) {

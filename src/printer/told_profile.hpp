@@ -5,7 +5,13 @@
 #include "printer/printer_client.hpp"
 #include "protocol/profile.hpp"
 
+#include <optional>
+
 namespace linefeed::printer {
+
+/// What the printer says that it is (`?VS`). std::nullopt: it does not tell, as in standby, or no profile is known for
+/// it.
+[[nodiscard]] std::optional<protocol::Profile> told_profile(PrinterClient& printer);
 
 /// Asks the printer (`?VS`) on a connection of its own. FailureKind::unreachable: it cannot be reached, or does not
 /// tell: nothing is guessed, since what needs escapes would come out wrong.

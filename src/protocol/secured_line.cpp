@@ -109,8 +109,8 @@ std::string_view SecuredLine::announced(Instant now) {
     }
     const std::string_view frame = state_ == State::syncing ? std::string_view{sync} : current_.bytes;
     announced_.clear();
-    const std::uint32_t crc = crc32(frame.substr(0, frame.size() - 1));
-    append_frame(announced_, Group::parameter, "NR" + std::to_string(crc));
+    sum_ = crc32(frame.substr(0, frame.size() - 1));
+    append_frame(announced_, Group::parameter, "NR" + std::to_string(sum_));
     announced_ += frame;
     announced_at_ = now;
     deadline_ = now + line_.time_of(announced_.size() + answer_bytes) + patience_;

@@ -95,6 +95,9 @@ public:
     /// What to write now: the announcement and its frame. The wait for the printer's word begins.
     [[nodiscard]] std::string_view announced(Instant now);
 
+    /// The sum that was announced last.
+    [[nodiscard]] std::uint32_t announced_sum() const { return sum_; }
+
     /// `!OK`.
     [[nodiscard]] Step on_right(Instant now);
     /// `=FC`.
@@ -135,6 +138,7 @@ private:
     std::size_t size_ = 0;
     Frame current_;
     std::string announced_;
+    std::uint32_t sum_ = 0;
     State state_ = State::idle;
     Instant announced_at_{};
     Instant deadline_{};

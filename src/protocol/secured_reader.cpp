@@ -15,7 +15,8 @@ bool is_parameter(const Frame& frame, Parameter what) {
 }
 
 /// `!OK`, also with one byte damaged: of a frame that it did not check the printer says nothing, and `=FC` differs in
-/// all three letters. Taken for right wrongly, a refused record is missing, and the printer stops at the gap.
+/// all three letters. Were a refused record taken for right, it would be missing, and the printer would stop at the gap
+/// behind a record with a number.
 bool is_right(const Frame& frame) {
     const std::string_view word = frame.payload.substr(0, frame.payload.find_last_not_of(' ') + 1);
     if (word.size() != 2) {
@@ -38,8 +39,8 @@ std::optional<Expected> message_of(const Frame& frame) {
 SecuredReader::Word SecuredReader::read(const Frame& frame, const SecuredLine& line) {
     const auto announced = std::exchange(announced_, std::nullopt);
     if (is_parameter(frame, Parameter::NR)) {
-        if (const auto next = message_of<NextCrc>(frame)) {
-            announced_ = next->crc;
+        if (const auto next = message_of<NextCrc>(frame); next && next->crc != line.announced_sum()) {
+            announced_ = next->crc; // or it is an echo of ours
         }
         return Word::announcement;
     }

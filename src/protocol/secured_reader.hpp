@@ -1,5 +1,5 @@
-// What the frames of the printer say in a secured transmission (protocol, section 6, CRC32): its words on our frames, and
-// which of its own have come as it sent them.
+// What the frames of the printer say in a secured transmission (protocol, section 6, CRC32): its words on our frames,
+// and which of its own have come as it sent them.
 #pragma once
 
 #include "protocol/frame.hpp"
@@ -14,7 +14,7 @@ namespace linefeed::protocol {
 class SecuredReader {
 public:
     enum class Word {
-        announcement, ///< `=NR`, of the next frame
+        announcement, ///< `=NR`, of the next frame; or an echo of ours
         right,        ///< `!OK`
         refused,      ///< `=FC`
         proven,       ///< a frame that was announced and is right

@@ -110,6 +110,14 @@ class BadFields(BadInput):
         self.assert_done(self.print(self.write_csv([["a^b"], ["a\\b"]]), printer, "--profile", "jet3up"))
         self.assert_printed([(1, "a^b"), (2, "a\\b")], printer)
 
+    def test_caret_and_backslash_by_what_the_printer_says(self):
+        """Only records that need an escape are refused, and nothing is printed of them."""
+        printer = self.simulator("--rate", 500, "--profile", "jet2neo-v71")
+        result = self.print(self.write_csv([["fine"], ["a\\b"]]), printer)
+        self.assert_one_clear_line(5, result, "knows no escapes", "escapes=on")
+        self.assert_done(self.print(self.write_csv([["fine"]], name="fine.csv"), printer))
+        self.assert_printed([(1, "fine")], printer)
+
     def test_outside_the_charset(self):
         self.refuse_field("Łódź".encode(), "U+0141")
 

@@ -2,6 +2,7 @@
 silent, one that is gone, wrong input, and a line at 500 a second that nobody may disturb. The judge is the printer's tape."""
 
 import json
+import socket
 import time
 
 import harness
@@ -53,6 +54,26 @@ class Direct(harness.TestCase):
         answer = self.json("query SM")["answers"][0]
         self.assertEqual(("=SM", "mailing status", r"^0=SM256\t0\t0\t0\t1"), (answer["command"], answer["what"], answer["raw"]))
         self.assertEqual(["!OK", "=NR", "=JL"], [a["command"] for a in self.json("send --crc ?JL")["answers"]])
+
+    def test_what_the_printer_says_that_it_is(self):
+        self.printer.stop()
+        printer = self.simulator("--profile", "jet3")
+        self.address = printer.address
+        self.assertIn("COUNTER.JOB", self.done("jobs").out.upper())
+        self.assert_one_clear_line(4, self.linefeed("counter", "limit", "1", "start", "5"), "jet3 knows no =CP")
+
+    def test_not_done(self):
+        self.done("power off --yes")
+        for words in ("nozzle open", "print start", "counters reset", "suspend --hold 1"):
+            self.assert_one_clear_line(4, self.linefeed(*words.split()), "standby")
+        self.done("power on")
+
+    def test_monitor_of_what_says_nothing(self):
+        silent = socket.create_server(("127.0.0.1", 0))
+        self.addCleanup(silent.close)
+        result = self.linefeed("monitor", "--for", "1", address=f"tcp://127.0.0.1:{silent.getsockname()[1]}")
+        self.assertEqual(3, result.code, str(result))
+        self.assertIn("<- no answer", result.err)
 
     def test_destructive_ones_need_a_word(self):
         for words in DESTRUCTIVE:

@@ -319,6 +319,12 @@ TEST(FeederFilling, shouldNotStartAPrinterAgainThatWasStopped) {
     EXPECT_FALSE(starts_again(story, 0) || starts_again(story, 0));
 }
 
+/// A part of the fill is gone: what is left might be printed as if it were all.
+TEST(FeederFilling, shouldNotStartAPrinterAgainThatHasAPartOfTheFill) {
+    Story story = reach_standing_behind_go();
+    EXPECT_FALSE(starts_again(story, 2) || starts_again(story, 2));
+}
+
 TEST(FeederFilling, shouldNotStartAPrinterAgainByAnswersFromBeforeItStood) {
     Story story = reach(Phase::starting);
     story.now += seconds{1}; // the first ?SM is not answered yet

@@ -230,6 +230,15 @@ TEST_F(ScriptedTest, shouldTakeABlockThatComesTwiceOnce) {
     EXPECT_EQ(get().value(), "one two");
 }
 
+/// Each word about a repeated block may bring the next one twice, and so on.
+TEST_F(ScriptedTest, shouldSayButOnceThatABlockHasComeAlready) {
+    const std::string first = block(1, "one ");
+    react({{header(2) + first}, {first + first + first}, {block(2, "two")}, {}});
+    EXPECT_EQ(get().value(), "one two");
+    EXPECT_TRUE(hears("$FA2\t1\n"));
+    EXPECT_THAT(peer_->heard(), HasSubstr("\n^0$FA1\t1\n^0$FA1\t1\n^0$FA2\t1\n"));
+}
+
 TEST_F(ScriptedTest, shouldAskAgainWhereNothingComes) {
     react({{}, {header(2)}, {block(1, "one ")}, {}, {block(2, "two")}, {}});
     EXPECT_EQ(get().value(), "one two");

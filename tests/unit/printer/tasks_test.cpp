@@ -76,10 +76,11 @@ TEST(Tasks, shouldReachEveryCommandOfTheReference) {
 TEST(Tasks, shouldSendNoFileAsItIsTypedWhileAJobIsOnTheLine) {
     const Task& send = *find_task("send");
     for (const auto& [frame, danger] :
-         {std::pair{"$FHFFSDISK\\\\Jobs\\\\a.job\\t1", Danger::feeding}, std::pair{"$FT1\\t0\\t", Danger::feeding},
+         {std::pair{"$FHFFSDISK\\\\Jobs\\\\a.job\\t1", Danger::spoiling}, std::pair{"$FT1\\t0\\t", Danger::spoiling},
           std::pair{"$DFx", Danger::destructive}, std::pair{"$RFx", Danger::none}, std::pair{"?RS", Danger::none},
           std::pair{"!GO", Danger::feeding}, std::pair{"!NC", Danger::spoiling}, std::pair{"!MC", Danger::spoiling},
-          std::pair{"!LF", Danger::spoiling}}) {
+          std::pair{"!LF", Danger::spoiling}, std::pair{"=CM90", Danger::spoiling}, std::pair{"=JLa", Danger::spoiling},
+          std::pair{"!ST", Danger::feeding}}) {
         const auto arguments = Arguments::read(send.arguments, {{"frame", frame}});
         EXPECT_EQ(danger_of(send, *arguments).value(), danger) << frame;
     }
@@ -206,6 +207,46 @@ TEST(Tasks, shouldRefuseWhatLosesSomethingWhileTheMachinePrints) {
     }
     EXPECT_THAT(printer.heard(), Not(HasSubstr("!")));
     EXPECT_TRUE(printer.run("print stop")) << "that it may always";
+}
+
+TEST(Tasks, shouldSayThatNothingIsDoneInStandby) {
+    AnsweringPrinter printer{{{"^0?RS", "^0=RS0\t1\t0\t0\t0\r"}}};
+    for (const char* name : {"nozzle open", "counters reset", "mode length", "print start", "suspend"}) {
+        const auto done = printer.run(name);
+        EXPECT_EQ(done.error().kind, FailureKind::stopped) << name;
+        EXPECT_THAT(done.error().message, HasSubstr("standby")) << name;
+    }
+}
+
+TEST(Tasks, shouldSayWhyThePrinterDoesNotStart) {
+    AnsweringPrinter closed{{{"^0?RS", "^0=RS4\t4\t0\t0\t0\r"}}};
+    EXPECT_THAT(closed.run("print start").error().message, HasSubstr("the machine says: ready for action"));
+    AnsweringPrinter open{{{"^0?RS", "^0=RS2\t5\t-1711274809\t1\t0\r"}}};
+    EXPECT_THAT(open.run("print start").error().message, HasSubstr("cover open"));
+    AnsweringPrinter printing{{{"^0?RS", "^0=RS2\t6\t0\t0\t0\r"}}};
+    EXPECT_EQ(printing.run("print start").value()["machine"], "printing");
+}
+
+TEST(Tasks, shouldSetATextInTheCharactersOfThePrinter) {
+    AnsweringPrinter printer{{{"^0?ET", "^0=ETGr\xF6\xDF"
+                                        "e 5 \x80\r"}}};
+    EXPECT_EQ(printer.run("text set", {{"text", "Gr\u00f6\u00dfe 5 \u20ac"}}).value()["text"],
+              "Gr\u00f6\u00dfe 5 \u20ac");
+    EXPECT_THAT(printer.heard(), HasSubstr("^0=ETGr\xF6\xDF"
+                                           "e 5 \x80\n"));
+    EXPECT_EQ(printer.run("text set", {{"text", "\u0141"}}).error().kind, FailureKind::input);
+    EXPECT_THAT(printer.run("text set", {{"text", "b"}}).error().message, HasSubstr("it shows another text: Gr"));
+}
+
+/// The list has bare numbers: nobody knows who has reported them.
+TEST(Tasks, shouldNotInventWhereAnErrorOfTheListComesFrom) {
+    AnsweringPrinter printer{{{"^0?EL", "^0=EL1\t1\t1\t26-11-27 10:00:00/00001223\r"}}};
+    const Json list = printer.run("errors").value();
+    ASSERT_EQ(list["errors"].size(), 1U);
+    EXPECT_EQ(list["errors"][0]["code"], 1223);
+    EXPECT_EQ(list["errors"][0]["meaning"], "all printed");
+    EXPECT_FALSE(list["errors"][0].contains("switches_off"));
+    EXPECT_FALSE(list["errors"][0].contains("words"));
 }
 
 TEST(Tasks, shouldDoNothingDangerousWhereNobodyKnowsWhetherItPrints) {

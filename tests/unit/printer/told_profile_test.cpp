@@ -18,6 +18,19 @@ TEST(ToldProfile, shouldBeThatOfTheTypeAndFirmware) {
     }
 }
 
+TEST(ToldProfile, shouldBeToldOnTheConnectionItself) {
+    simulator::SimulatorSettings settings;
+    settings.printer.profile = protocol::profile_by_name("jet3").value();
+    RunningSimulator printer{settings};
+    const auto client = PrinterClient::connect(printer.settings()).value();
+    const auto told = told_profile(*client).value();
+    EXPECT_EQ(told.name, "jet3");
+    client->use(told);
+    EXPECT_EQ(client->settings().profile.escapes, protocol::EscapeMode::none);
+    ASSERT_TRUE(client->send(protocol::Action::power_off));
+    EXPECT_FALSE(told_profile(*client)) << "in standby it is not asked";
+}
+
 TEST(ToldProfile, shouldNotBeGuessed) {
     Peer silent{[](std::string_view) { return Peer::Reaction{}; }};
     const auto untold = ask_profile(silent.settings());

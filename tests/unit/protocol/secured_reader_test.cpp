@@ -37,6 +37,17 @@ TEST_F(SecuredReaderTest, shouldBelieveAnAnnouncementOnce) {
     EXPECT_EQ(read(answer), Word::bare);
 }
 
+/// `!EM` echoes the announcement, too; what comes behind it is none the better for that.
+TEST_F(SecuredReaderTest, shouldNotTakeAnEchoOfOurAnnouncementForThePrinters) {
+    static_cast<void>(line_.announced(Instant{}));
+    const std::string ours = "^0=NR" + std::to_string(line_.announced_sum());
+    for (int i = 0; i < 3; ++i) {
+        EXPECT_EQ(read(ours), Word::announcement);
+        EXPECT_EQ(read("^0=SM256\t0\t1\t0\t1\t7"), Word::bare);
+    }
+    EXPECT_TRUE(reader_.unsecured());
+}
+
 TEST_F(SecuredReaderTest, shouldTakeOneDamagedByteOfOkForOk) {
     for (const char* word : {"^0!OK", "^0!OK  ", "^0!OX", "^0!\x01K", "^0=OK"}) {
         EXPECT_EQ(read(word), Word::right) << word;
