@@ -60,6 +60,7 @@ Result<ExitCode> PrintCommand::run(const std::filesystem::path& spool_path, cons
         return endpoints.error();
     }
     if (const auto fits = check_escapes(*spool); !fits) {
+        import_.reset(); // before the spool
         return fits.error();
     }
     daemon::JobRunSettings settings = run_settings();

@@ -29,9 +29,9 @@ private:
     [[nodiscard]] daemon::JobRunSettings run_settings() const;
     Result<ExitCode> print(spool::Spool& spool, const daemon::JobRunSettings& settings);
     Result<ExitCode> report(spool::Spool& spool, feeder::Outcome outcome);
+    [[nodiscard]] Result<void> check_escapes(spool::Spool& spool) const;
     /// What --from and --to leave of the job; up to where it can reach while its end is not known. FailureKind::usage
     /// if they are wrong.
-    [[nodiscard]] Result<void> check_escapes(spool::Spool& spool) const;
     [[nodiscard]] Result<RecordRange> wanted_range() const;
 
     // print_import.cpp: the import, before and while it is printed

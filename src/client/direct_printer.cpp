@@ -2,7 +2,6 @@
 
 #include "config/load.hpp"
 #include "link/printer_address.hpp"
-#include "printer/look.hpp"
 #include "printer/told_profile.hpp"
 
 #include <fstream>
