@@ -171,7 +171,7 @@ public:
     // Pages
     /// The page that holds `number`, its checksum verified.
     [[nodiscard]] Result<RecordPage> read_page(JobId id, RecordNumber number);
-    /// Whether any record of the job has a `\` in it, which is there only to escape. Reads them all if none has.
+    /// Whether any record of the job has a `\` in it, which is there only to escape.
     [[nodiscard]] Result<bool> has_escapes(JobId id);
 
     // Ledger

@@ -1,0 +1,2 @@
+-- The pages that hold a `\`, which is there only to escape: whether a job has one is asked before each start.
+CREATE INDEX pages_with_escapes ON pages (job) WHERE instr(frames, x'5C') > 0;
