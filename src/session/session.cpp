@@ -80,6 +80,7 @@ void Session::take_frame(const protocol::Frame& frame, Instant now, Actions& act
     }
     ++statistics_.frames_received;
     heard_at_ = now;
+    answers_missing_ = 0;
     if (settings_.line.crc) {
         take_secured(frame, now, actions);
     } else {
@@ -164,10 +165,13 @@ void Session::forget_mail_before_status(Instant now, Actions& actions) {
     }
 }
 
-/// Only `?RS` and `?SM` must be answered.
+/// Only `?RS` and `?SM` must be answered. One that is not, while the line was busy with what goes the other way, may
+/// have fallen to noise; not several.
 void Session::time_out(Parameter what, Instant now, Actions& actions) {
     const bool needed = what == Parameter::RS || what == Parameter::SM;
-    if (needed && now - std::max(heard_at_, line_free_at_) >= settings_.reply_timeout) {
+    const bool waited = now - heard_at_ >= settings_.reply_timeout;
+    const bool line_was_free = now - line_free_at_ >= settings_.reply_timeout;
+    if (needed && waited && (line_was_free || ++answers_missing_ == max_answers_missing)) {
         feeder_.on_silence(actions);
     } else {
         feeder_.on_lost_answer(what, now, actions);

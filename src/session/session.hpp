@@ -109,6 +109,7 @@ private:
         Instant deadline{};
     };
     static constexpr std::size_t max_inquiries = 64;
+    static constexpr int max_answers_missing = 3;
 
     void take_damage(std::uint64_t bytes, Instant now);
     void take_frame(const protocol::Frame& frame, Instant now, feeder::Actions& actions);
@@ -154,7 +155,8 @@ private:
     std::optional<RecordsWritten> staged_records_;    ///< in the outbox, for the next write
     std::optional<RecordsWritten> records_under_way_; ///< with the write under way
     BoundedList<Inquiry, max_inquiries> inquiries_;
-    Instant heard_at_{}; ///< of the last frame
+    Instant heard_at_{};      ///< of the last frame
+    int answers_missing_ = 0; ///< that were needed, and nothing has come since
     SessionStatistics statistics_;
     bool connected_ = false;
     std::optional<feeder::End> end_; ///< the feeder has ended; its last commands may still be on the way

@@ -102,6 +102,27 @@ TEST(Session, shouldStopALineThatDoesNotAnswerAnyMore) {
     EXPECT_EQ(host.pages_released, pages.size());
 }
 
+/// Whatever it is asked meanwhile: the inquiries need not time out together.
+TEST(Session, shouldNotWaitLongerForALineThatIsAskedAllTheTime) {
+    const auto pages = thousand_records();
+    Conversation host;
+    host.print(pages);
+    Instant heard = host.now;
+    for (int i = 0; i < 400; ++i) {
+        host.wait(milliseconds{1});
+        const std::string sent = host.sent();
+        for (auto at = sent.find('?'); at != std::string::npos; at = sent.find('?', at + 1)) {
+            host.receive(sent.substr(at + 1, 2) == "RS" ? printing : mail(255, 0, 1000));
+            heard = host.now;
+        }
+    }
+    while (!host.ended && host.now < heard + seconds{10}) {
+        host.wake();
+    }
+    EXPECT_EQ(host.outcome.code, OutcomeCode::no_answer);
+    EXPECT_LE(host.now - heard, milliseconds{2500});
+}
+
 /// On a serial line an answer may be damaged: that stops nothing.
 TEST(Session, shouldAskAgainWhenAnAnswerIsLost) {
     Conversation host;
