@@ -331,7 +331,7 @@ ExitCode run_preview(const PreviewOptions& options) {
         }
         if (!options.png.empty()) {
             const auto png = printer::to_png(*picture, options.scale);
-            const auto written = png ? write_file(options.png, *png, true) : png.error();
+            const auto written = png ? write_file(options.png, *png, options.replace) : png.error();
             if (!written) {
                 return written.error();
             }

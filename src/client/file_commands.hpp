@@ -40,6 +40,7 @@ struct ScriptOptions {
 struct PreviewOptions {
     PrinterOptions printer;
     std::filesystem::path png; ///< empty = none: on the terminal
+    bool replace = false;      ///< the file that is there
     std::uint32_t scale = 4;   ///< pixels of a dot
     bool ascii = false;
 };

@@ -53,7 +53,11 @@ public:
         , json_(options.printer.common.json)
         , recording_(!options.file.empty()) {}
 
-    [[nodiscard]] Result<void> open(const std::filesystem::path& file) {
+    [[nodiscard]] Result<void> open(const std::filesystem::path& file, bool replace) {
+        std::error_code unknown;
+        if (recording_ && !replace && std::filesystem::is_regular_file(file, unknown)) {
+            return Failure{FailureKind::usage, file.string() + ": there is something of that name already"};
+        }
         if (recording_) {
             out_.open(file, std::ios::binary | std::ios::trunc);
         }
@@ -273,7 +277,7 @@ ExitCode run_monitor(const MonitorOptions& options) {
         }
         Until until{options.duration};
         Listener listener{options, *escapes};
-        if (auto opened = listener.open(options.file); !opened) {
+        if (auto opened = listener.open(options.file, options.replace); !opened) {
             return opened.error();
         }
         Result<void> listened;

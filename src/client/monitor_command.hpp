@@ -16,6 +16,7 @@ struct MonitorOptions {
     std::chrono::milliseconds interval{1000};            ///< of an address: between two inquiries
     std::optional<std::chrono::milliseconds> duration{}; ///< absent = until Ctrl-C
     std::filesystem::path file{};                        ///< to record into; empty = show it
+    bool replace = false;                                ///< the file that is there
 };
 
 struct ReplayOptions {

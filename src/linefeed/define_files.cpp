@@ -97,6 +97,7 @@ void add_preview(CLI::App& printer, Commands& commands, const Printer& printer_o
     preview.add_option("--scale", options->scale, "Of the PNG: pixels of a dot")
         ->capture_default_str()
         ->check(CLI::Range(1U, max_scale));
+    preview.add_flag("--replace", options->replace, "Replace the file of --png");
     preview.add_flag("--ascii", options->ascii, "A character for each dot");
     commands.push_back({&preview, [=] {
                             options->printer = *printer_options;

@@ -140,6 +140,7 @@ void add_monitor(CLI::App& printer, Commands& commands,
     CLI::App& monitor = *printer.add_subcommand("monitor", "Follow the conversation with the printer, in words");
     CLI::App& record = *printer.add_subcommand("record", "Write the conversation with the printer into a file");
     record.add_option("FILE", options->file, "Lines of JSON: time, direction, bytes")->required();
+    record.add_flag("--replace", options->replace, "Replace FILE");
     for (CLI::App* const command : {&monitor, &record}) {
         command->fallthrough();
         command->footer("Of a printer of the service its session is shown, of an address an own one, which asks ?RS "

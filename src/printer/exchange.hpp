@@ -5,7 +5,9 @@
 #include "printer/printer_client.hpp"
 #include "protocol/messages.hpp"
 
+#include <chrono>
 #include <string>
+#include <thread>
 #include <vector>
 
 namespace linefeed::printer {
@@ -27,6 +29,21 @@ template <typename Answer>
 [[nodiscard]] Result<Answer> asked(PrinterClient& printer, protocol::Parameter what, std::string argument = {}) {
     auto answer = printer.ask<Answer>(what, std::move(argument));
     return answer ? Result<Answer>{*std::move(answer)} : no_answer(printer, what);
+}
+
+/// The same until `is_so` of it, `longest` at most: the last answer.
+template <typename Answer, typename IsSo>
+[[nodiscard]] Result<Answer> asked_until(PrinterClient& printer, protocol::Parameter what, Duration longest,
+                                         const IsSo& is_so) {
+    constexpr Duration look_again = std::chrono::milliseconds{50};
+    const auto deadline = std::chrono::steady_clock::now() + longest;
+    while (true) {
+        auto answer = asked<Answer>(printer, what);
+        if (!answer || is_so(*answer) || std::chrono::steady_clock::now() >= deadline) {
+            return answer;
+        }
+        std::this_thread::sleep_for(look_again);
+    }
 }
 
 /// `?EL` and `?EV`: the whole list, put together from its blocks; asked for again if it changed meanwhile.

@@ -59,7 +59,7 @@ std::vector<std::string_view> transfers_using(const CommandId& command) {
 
 std::span<const Task> tasks() {
     static const std::vector<Task> all =
-        joined(std::array{look_tasks(), change_tasks(), file_tasks(), probe_tasks(), raw_tasks()});
+        joined(std::array{look_tasks(), machine_tasks(), setting_tasks(), file_tasks(), probe_tasks(), raw_tasks()});
     return all;
 }
 

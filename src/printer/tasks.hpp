@@ -12,11 +12,12 @@
 namespace linefeed::printer {
 
 // One list for each theme
-[[nodiscard]] std::span<const Task> look_tasks();   ///< look_tasks.cpp
-[[nodiscard]] std::span<const Task> change_tasks(); ///< change_tasks.cpp
-[[nodiscard]] std::span<const Task> file_tasks();   ///< file_tasks.cpp
-[[nodiscard]] std::span<const Task> probe_tasks();  ///< probe.cpp
-[[nodiscard]] std::span<const Task> raw_tasks();    ///< raw_tasks.cpp
+[[nodiscard]] std::span<const Task> look_tasks();    ///< look_tasks.cpp
+[[nodiscard]] std::span<const Task> machine_tasks(); ///< machine_tasks.cpp
+[[nodiscard]] std::span<const Task> setting_tasks(); ///< setting_tasks.cpp
+[[nodiscard]] std::span<const Task> file_tasks();    ///< file_tasks.cpp
+[[nodiscard]] std::span<const Task> probe_tasks();   ///< probe.cpp
+[[nodiscard]] std::span<const Task> raw_tasks();     ///< raw_tasks.cpp
 
 /// All of them, by theme.
 [[nodiscard]] std::span<const Task> tasks();

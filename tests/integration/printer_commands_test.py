@@ -22,7 +22,7 @@ class Direct(harness.TestCase):
 
     def setUp(self):
         super().setUp()
-        self.printer = self.simulator("--rate", "500")
+        self.printer = self.simulator("--rate", "500", "--counter", "1-9999")
         self.address = self.printer.address
 
     def linefeed(self, *words, address=None):
@@ -61,6 +61,7 @@ class Direct(harness.TestCase):
         self.address = printer.address
         self.assertIn("COUNTER.JOB", self.done("jobs").out.upper())
         self.assert_one_clear_line(4, self.linefeed("counter", "limit", "1", "start", "5"), "jet3 knows no =CP")
+        self.assert_one_clear_line(4, self.linefeed("counter", "reset", "2"), "the job has no counter")
 
     def test_not_done(self):
         self.done("power off --yes")
@@ -106,6 +107,7 @@ class Direct(harness.TestCase):
         file = self.directory / "conversation.jsonl"
         self.done("status")  # clears the word that the job has changed
         self.done("record", file, "--for", "0.3", "--interval", "0.05")
+        self.assert_one_clear_line(2, self.linefeed("record", file, "--for", "0.1"), "already")
         lines = [json.loads(line) for line in file.read_text(encoding="utf-8").splitlines()]
         self.assertEqual({"sent", "received"}, {line["direction"] for line in lines})
         shown = self.done("replay", file, "--fast").out
@@ -142,7 +144,7 @@ class Direct(harness.TestCase):
 
 
 class ThroughService(ServiceTest):
-    simulator_options = ("--rate", "500")
+    simulator_options = ("--rate", "500", "--counter", "1-9999")
 
     def setUp(self):
         super().setUp()

@@ -272,8 +272,10 @@ TEST(Tasks, shouldNeverAcknowledgeBlindly) {
 }
 
 TEST(Tasks, shouldSendCommandsAsTheManualHasThem) {
-    AnsweringPrinter printer{
-        {{"^0?RS", "^0=RS2\t5\t0\t0\t9\t0\r"}, {"^0?CC", "^0=CC5\t10\t99\r"}, {"^0?PR1", "^0=PR1\t700\r"}}};
+    AnsweringPrinter printer{{{"^0?RS", "^0=RS2\t5\t0\t0\t9\t0\r"},
+                              {"^0?CC", "^0=CC5\t10\t99\r"},
+                              {"^0?PR1", "^0=PR1\t700\r"},
+                              {"^0?AC", "^0=AC2\t1\t0\t5\t1\t0\t6\r"}}};
     EXPECT_EQ(printer.run("counters set", {{"product", 5}, {"stop_after", 10}}).value()["total"], 99);
     EXPECT_EQ(printer.run("counters set", {{"stop_after", 11}}).error().kind, FailureKind::stopped);
     EXPECT_TRUE(printer.run("outputs take"));
@@ -281,6 +283,9 @@ TEST(Tasks, shouldSendCommandsAsTheManualHasThem) {
     EXPECT_TRUE(printer.run("outputs give-back"));
     EXPECT_TRUE(printer.run("counter limit", {{"counter", 2}, {"limit", "end"}, {"value", 9'999'999'999}}));
     EXPECT_TRUE(printer.run("counter reset", {{"counter", 0}}));
+    EXPECT_THAT(printer.run("counter limit", {{"counter", 3}, {"limit", "end"}, {"value", 9}}).error().message,
+                HasSubstr("counters 1 to 2"));
+    EXPECT_EQ(printer.run("counter reset", {{"counter", 3}}).error().kind, FailureKind::stopped);
     EXPECT_TRUE(printer.run("parameter set", {{"type", "delay"}, {"value", 700}}));
     const std::string heard = printer.heard();
     for (const char* frame :

@@ -1,151 +1,20 @@
-// What can be done to a printer. Each sends its command and shows what the printer says then: an answer behind it
-// proves that it has arrived.
-#include "printer/exchange.hpp"
+// The settings of a printer and of its job: counters, outputs, clock, parameters, text, and the modes of its answers.
+#include "printer/change.hpp"
 #include "printer/host_time.hpp"
 #include "printer/message_json.hpp"
 #include "printer/print_parameters.hpp"
-#include "printer/printer_commands.hpp"
 #include "printer/printer_path.hpp"
 #include "printer/tasks.hpp"
 
 #include <array>
 #include <chrono>
-#include <thread>
 
 namespace linefeed::printer {
 
 using protocol::Action;
-using protocol::Group;
-using protocol::MachineState;
-using protocol::MachineStatus;
 using protocol::Parameter;
 
 namespace {
-
-constexpr CommandId does(std::string_view code) {
-    return {Group::action, code};
-}
-constexpr CommandId sets(std::string_view code) {
-    return {Group::parameter, code};
-}
-
-Failure not_done(const MachineStatus& status) {
-    return not_taken("the machine says: " + std::string{to_string(status.machine)} +
-                     (status.error.none() ? "" : ", " + describe(status.error)) +
-                     (status.cover_open ? ", cover open" : ""));
-}
-
-/// What the machine says behind a command. In standby it does nothing of it (protocol, section 1).
-Result<Json> machine_behind(PrinterClient& printer) {
-    const auto status = asked<MachineStatus>(printer, Parameter::RS);
-    if (!status) {
-        return Failure{status.error().kind,
-                       "it is sent, but nobody knows whether it has arrived: " + status.error().message};
-    }
-    if (status->machine == MachineState::standby) {
-        return not_done(*status);
-    }
-    return json_result(fields_of(protocol::Message{*status}));
-}
-
-Result<Json> sent(PrinterClient& printer, const protocol::Message& message) {
-    return printer.send(message) ? machine_behind(printer) : not_confirmed(printer);
-}
-
-template <Action action>
-Result<Json> act(PrinterClient& printer, const Order& /*order*/) {
-    return sent(printer, protocol::ActionMessage{action});
-}
-
-Result<Json> start(PrinterClient& printer, const Order& /*order*/) {
-    if (!printer.send(Action::start_print)) {
-        return not_confirmed(printer);
-    }
-    constexpr auto longest = std::chrono::seconds{1};
-    constexpr auto look_again = std::chrono::milliseconds{50};
-    const auto deadline = std::chrono::steady_clock::now() + longest;
-    while (true) {
-        const auto status = asked<MachineStatus>(printer, Parameter::RS);
-        if (!status) {
-            return status.error();
-        }
-        if (status->machine == MachineState::printing) {
-            return json_result(fields_of(protocol::Message{*status}));
-        }
-        if (std::chrono::steady_clock::now() >= deadline) {
-            return not_done(*status);
-        }
-        std::this_thread::sleep_for(look_again);
-    }
-}
-
-/// For what leads into standby or out of it: there the printer may be silent.
-template <Action action>
-Result<Json> act_unheard(PrinterClient& printer, const Order& /*order*/) {
-    if (!printer.send(action)) {
-        return not_confirmed(printer);
-    }
-    const auto status = printer.ask<MachineStatus>(Parameter::RS);
-    return status ? json_result(fields_of(protocol::Message{*status}))
-                  : json_result({{"machine", nullptr}, {"note", "it is sent; the printer does not answer now"}});
-}
-
-Result<Json> restart(PrinterClient& printer, const Order& order) {
-    const auto status = printer.ask<MachineStatus>(Parameter::RS);
-    if (status && status->machine != MachineState::standby) {
-        return Failure{FailureKind::stopped, "a restart works in standby only, and the machine says: " +
-                                                 std::string{to_string(status->machine)} + ". Say power off first"};
-    }
-    return act_unheard<Action::restart>(printer, order);
-}
-
-Result<Json> flush(PrinterClient& printer, const Order& /*order*/) {
-    if (!printer.send(Action::flush_fifo)) {
-        return not_confirmed(printer);
-    }
-    static_cast<void>(printer.ask<protocol::MailStatus>(Parameter::SM)); // the first one may be old
-    const auto mail = asked<protocol::MailStatus>(printer, Parameter::SM);
-    if (!mail) {
-        return mail.error();
-    }
-    if (mail->entries != 0) {
-        return not_taken("there are still " + std::to_string(mail->entries) + " entries in its FIFO");
-    }
-    return json_result(fields_of(*mail));
-}
-
-Result<Json> stop_at(PrinterClient& printer, const Order& order) {
-    const RecordNumber number{static_cast<std::uint32_t>(*order.arguments.number("number"))};
-    if (!printer.send(protocol::StopAt{number})) {
-        return not_confirmed(printer);
-    }
-    static_cast<void>(printer.ask<protocol::MailStatus>(Parameter::SM));
-    const auto mail = asked<protocol::MailStatus>(printer, Parameter::SM);
-    if (!mail) {
-        return mail.error();
-    }
-    if (mail->stop_at != number) {
-        return not_taken("it stops at " + std::to_string(mail->stop_at.value()) + "; some firmware ignores =CM");
-    }
-    return json_result(fields_of(*mail));
-}
-
-/// The error that the printer shows, or none but the one that is named: never a blind `!EQ`.
-Result<Json> acknowledge_shown(PrinterClient& printer, const Order& order) {
-    const auto status = asked<MachineStatus>(printer, Parameter::RS);
-    if (!status) {
-        return status.error();
-    }
-    const auto named = order.arguments.number("error");
-    if (status->error.none() && !named) {
-        return Failure{FailureKind::stopped, "the printer shows no error"};
-    }
-    const auto left = acknowledge(printer, named ? static_cast<std::uint32_t>(*named) : status->error.code());
-    if (!left) {
-        return left.error();
-    }
-    return json_result({{"acknowledged", to_json(status->error)}, {"error", to_json(*left)}});
-}
 
 Result<Json> set_counters(PrinterClient& printer, const Order& order) {
     protocol::Counters wanted;
@@ -178,6 +47,19 @@ Failure unknown_to(const PrinterClient& printer, std::string_view command, std::
                                       "=on behind the profile's name"};
 }
 
+/// Sends what is for one counter of the job. The printer passes over a counter that the job has not; it says which it
+/// has, unless its firmware does not know `?AC`.
+Result<Json> sent_to_counter(PrinterClient& printer, std::uint32_t counter, const protocol::Message& message) {
+    auto said = sent(printer, message);
+    const auto has = said ? printer.ask<protocol::JobCounters>(Parameter::AC) : std::nullopt;
+    if (has && counter > has->counters.size()) {
+        return not_taken("the job has " + (has->counters.empty()
+                                               ? std::string{"no counter"}
+                                               : "the counters 1 to " + std::to_string(has->counters.size())));
+    }
+    return said;
+}
+
 Result<Json> limit_counter(PrinterClient& printer, const Order& order) {
     if (!printer.settings().profile.counter_parameters) {
         return unknown_to(printer, "=CP", "counter-limits");
@@ -186,15 +68,16 @@ Result<Json> limit_counter(PrinterClient& printer, const Order& order) {
     if (limit != "start" && limit != "end") {
         return Failure{FailureKind::usage, "limit must be start or end"};
     }
-    return sent(printer, protocol::CounterParameter{static_cast<std::uint32_t>(*order.arguments.number("counter")),
-                                                    limit == "start" ? protocol::CounterLimit::start
-                                                                     : protocol::CounterLimit::end,
-                                                    *order.arguments.number("value")});
+    const auto counter = static_cast<std::uint32_t>(*order.arguments.number("counter"));
+    return sent_to_counter(printer, counter,
+                           protocol::CounterParameter{
+                               counter, limit == "start" ? protocol::CounterLimit::start : protocol::CounterLimit::end,
+                               *order.arguments.number("value")});
 }
 
 Result<Json> reset_counter(PrinterClient& printer, const Order& order) {
-    return sent(printer, protocol::CounterReset{static_cast<std::uint32_t>(*order.arguments.number("counter")),
-                                                order.arguments.number("start")});
+    const auto counter = static_cast<std::uint32_t>(*order.arguments.number("counter"));
+    return sent_to_counter(printer, counter, protocol::CounterReset{counter, order.arguments.number("start")});
 }
 
 Result<Json> send_output(PrinterClient& printer, const protocol::OutputChange& change) {
@@ -253,43 +136,20 @@ Result<Json> set_text(PrinterClient& printer, const Order& order) {
         return not_confirmed(printer);
     }
     constexpr auto longest = std::chrono::milliseconds{500}; // it takes 20 to 150 ms
-    constexpr auto look_again = std::chrono::milliseconds{50};
-    const auto deadline = std::chrono::steady_clock::now() + longest;
-    while (true) {
-        const auto now = asked<protocol::ExternText>(printer, Parameter::ET);
-        if (!now) {
-            return now.error();
-        }
-        if (*now == wanted) {
-            return json_result(fields_of(protocol::Message{*now}));
-        }
-        if (std::chrono::steady_clock::now() >= deadline) {
-            return not_taken("it shows another text: " + protocol::printable(path_text(now->text)));
-        }
-        std::this_thread::sleep_for(look_again);
+    const auto now = asked_until<protocol::ExternText>(printer, Parameter::ET, longest,
+                                                       [&wanted](const auto& text) { return text == wanted; });
+    if (!now) {
+        return now.error();
     }
+    return *now == wanted
+               ? json_result(fields_of(protocol::Message{*now}))
+               : Result<Json>{not_taken("it shows another text: " + protocol::printable(path_text(now->text)))};
 }
 
 Result<Json> fill_blocks(PrinterClient& printer, const Order& order) {
     return sent(printer, protocol::BlockLength{static_cast<std::uint32_t>(*order.arguments.number("bytes"))});
 }
 
-constexpr std::array start_uses{does("GO")};
-constexpr std::array stop_uses{does("ST")};
-constexpr std::array nozzle_open_uses{does("NO")};
-constexpr std::array nozzle_close_uses{does("NC")};
-constexpr std::array motor_open_uses{does("MO")};
-constexpr std::array motor_close_uses{does("MC")};
-constexpr std::array power_on_uses{does("PO")};
-constexpr std::array power_off_uses{does("PF")};
-constexpr std::array restart_uses{does("RM")};
-constexpr std::array factory_uses{does("FA")};
-constexpr std::array acknowledge_uses{does("EQ")};
-constexpr std::array suspend_uses{does("US")};
-constexpr std::array release_uses{does("UR")};
-constexpr std::array flush_uses{does("FF")};
-constexpr std::array stop_at_uses{sets("CM")};
-constexpr std::array fonts_uses{does("LF")};
 constexpr std::array counters_set_uses{sets("CC")};
 constexpr std::array counters_reset_uses{does("RC")};
 constexpr std::array counter_limit_uses{sets("CP")};
@@ -305,18 +165,6 @@ constexpr std::array echo_uses{does("EM")};
 constexpr std::array fill_uses{sets("FL")};
 
 constexpr auto number = Argument::Type::number;
-constexpr std::array acknowledge_arguments{
-    Argument{.name = "error",
-             .help = "Its number; another one is left alone. Default: the one that the printer shows",
-             .type = number,
-             .positional = true,
-             .smallest = 1,
-             .largest = (1U << 25U) - 1}};
-constexpr std::array stop_at_arguments{Argument{.name = "number",
-                                                .help = "The last record to print; 0: none",
-                                                .type = number,
-                                                .required = true,
-                                                .positional = true}};
 constexpr std::array counters_set_arguments{
     Argument{.name = "product", .help = "Set the product counter", .type = number},
     Argument{.name = "stop_after", .help = "Stop after so many products; 0: never", .type = number}};
@@ -364,34 +212,12 @@ constexpr std::array fill_arguments{Argument{.name = "bytes",
                                              .smallest = 1,
                                              .largest = 2048}};
 
-constexpr Task change(std::string_view name, std::string_view help, std::span<const CommandId> uses,
-                      decltype(Task::run) run, std::span<const Argument> arguments = {}) {
-    return {name, Task::Kind::change, help, uses, arguments, run};
-}
 constexpr Task option_of_look(Task task) {
     task.options_of_look = true;
     return task;
 }
 
 constexpr std::array list{
-    change("print start", "Start print-ready, whatever is in the FIFO", start_uses, start),
-    change("print stop", "Stop print-ready; empties the FIFO", stop_uses, act<Action::stop_print>),
-    change("nozzle open", "Open the nozzle; takes 30 to 60 s", nozzle_open_uses, act<Action::nozzle_open>),
-    change("nozzle close", "Close the nozzle", nozzle_close_uses, act<Action::nozzle_close>),
-    change("motor open", "Open the nozzle's seal by a step", motor_open_uses, act<Action::motor_open>),
-    change("motor close", "Close the nozzle's seal by a step", motor_close_uses, act<Action::motor_close>),
-    change("power on", "Switch on, out of standby", power_on_uses, act_unheard<Action::power_on>),
-    change("power off", "Switch off, to standby", power_off_uses, act_unheard<Action::power_off>),
-    change("restart", "Restart the machine, which must be in standby", restart_uses, restart),
-    change("factory-reset", "Set everything back as it left the factory", factory_uses,
-           act_unheard<Action::factory_reset>),
-    change("acknowledge", "Acknowledge the error that the printer shows", acknowledge_uses, acknowledge_shown,
-           acknowledge_arguments),
-    change("suspend", "Block the panel for 10 s", suspend_uses, act<Action::user_suspend>),
-    change("release", "Give the panel back", release_uses, act<Action::user_resume>),
-    change("flush", "Empty the mailing FIFO", flush_uses, flush),
-    change("mailing stop-at", "Let the printer stop behind a record", stop_at_uses, stop_at, stop_at_arguments),
-    change("fonts reload", "Load the fonts again; interrupts printing", fonts_uses, act<Action::reload_fonts>),
     option_of_look(
         change("counters set", "Set the product counter", counters_set_uses, set_counters, counters_set_arguments)),
     change("counters reset", "Set the counters of the job back", counters_reset_uses, act<Action::reset_counters>),
@@ -418,7 +244,7 @@ constexpr std::array list{
 
 } // namespace
 
-std::span<const Task> change_tasks() {
+std::span<const Task> setting_tasks() {
     return list;
 }
 
