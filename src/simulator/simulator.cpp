@@ -51,6 +51,13 @@ Simulator::Simulator(SimulatorSettings settings, boost::asio::io_context& io)
 }
 
 Result<std::string> Simulator::open() {
+    signals_.add(SIGINT);
+    signals_.add(SIGTERM);
+    signals_.async_wait([this](const error_code& error, int) {
+        if (!error) {
+            shut_down();
+        }
+    });
     const auto line = server_.open_serial();
     if (!line) {
         return line.error();
@@ -73,13 +80,6 @@ Result<void> Simulator::run() {
 }
 
 void Simulator::start() {
-    signals_.add(SIGINT);
-    signals_.add(SIGTERM);
-    signals_.async_wait([this](const error_code& error, int) {
-        if (!error) {
-            shut_down();
-        }
-    });
     started_ = steady_now();
     wait_for_idleness();
     wait_for_fault();
