@@ -5,6 +5,7 @@
 #include "client/direct_printer.hpp"
 #include "printer/conversation.hpp"
 #include "printer/job_commands.hpp"
+#include "printer/local_file.hpp"
 #include "printer/message_json.hpp"
 #include "protocol/profile.hpp"
 
@@ -53,21 +54,21 @@ public:
         , json_(options.printer.common.json)
         , recording_(!options.file.empty()) {}
 
-    [[nodiscard]] Result<void> open(const std::filesystem::path& file, bool replace) {
-        std::error_code unknown;
-        if (recording_ && !replace && std::filesystem::is_regular_file(file, unknown)) {
-            return Failure{FailureKind::usage, file.string() + ": there is something of that name already"};
-        }
-        if (recording_) {
-            out_.open(file, std::ios::binary | std::ios::trunc);
-        }
-        return out_.fail() ? cannot_write(file) : Result<void>{};
+    /// FailureKind::usage: a file would be replaced. A pipe or a terminal is written to as it is.
+    [[nodiscard]] static Result<void> check_name(const MonitorOptions& options) {
+        std::error_code none;
+        const bool taken = !options.file.empty() && std::filesystem::is_regular_file(options.file, none);
+        return taken && !options.replace ? printer::name_taken(options.file) : Result<void>{};
     }
+    /// The file is made with the first thing that is heard: a printer that is away takes nothing of what is there.
     [[nodiscard]] Result<void> hear(const Utterance& utterance, const std::filesystem::path& file) {
         ++heard_;
         if (!recording_) {
             finder_.add(utterance, [this](const SpokenFrame& frame) { show_frame(frame, json_); });
             return {};
+        }
+        if (!out_.is_open()) {
+            out_.open(file, std::ios::binary | std::ios::trunc);
         }
         out_ << to_line(utterance) << std::endl;
         return out_.fail() ? cannot_write(file) : Result<void>{};
@@ -277,8 +278,8 @@ ExitCode run_monitor(const MonitorOptions& options) {
         }
         Until until{options.duration};
         Listener listener{options, *escapes};
-        if (auto opened = listener.open(options.file, options.replace); !opened) {
-            return opened.error();
+        if (auto named = Listener::check_name(options); !named) {
+            return named.error();
         }
         Result<void> listened;
         if (is_address(options.printer.printer)) {

@@ -93,11 +93,12 @@ void add_preview(CLI::App& printer, Commands& commands, const Printer& printer_o
     constexpr std::uint32_t max_scale = 32;
     const auto options = std::make_shared<client::PreviewOptions>();
     CLI::App& preview = command_in(printer, "preview", "What the product will look like, dot by dot");
-    preview.add_option("--png", options->png, "Write a PNG instead of drawing on the terminal");
+    CLI::Option* const png =
+        preview.add_option("--png", options->png, "Write a PNG instead of drawing on the terminal");
     preview.add_option("--scale", options->scale, "Of the PNG: pixels of a dot")
         ->capture_default_str()
         ->check(CLI::Range(1U, max_scale));
-    preview.add_flag("--replace", options->replace, "Replace the file of --png");
+    preview.add_flag("--replace", options->replace, "Replace the file of --png")->needs(png);
     preview.add_flag("--ascii", options->ascii, "A character for each dot");
     commands.push_back({&preview, [=] {
                             options->printer = *printer_options;

@@ -52,11 +52,15 @@ NewFile::~NewFile() {
     }
 }
 
+Failure name_taken(const std::filesystem::path& path) {
+    return {FailureKind::usage, path.string() + ": there is something of that name already"};
+}
+
 Result<NewFile> NewFile::create(const std::filesystem::path& path, Existing existing) {
     struct stat status {};
     const bool taken = ::lstat(path.c_str(), &status) == 0;
     if (taken && (existing == Existing::refuse || !S_ISREG(status.st_mode))) {
-        return Failure{FailureKind::usage, path.string() + ": there is something of that name already"};
+        return name_taken(path);
     }
     std::string temporary = (directory_of(path) / ".linefeed-XXXXXX").string();
     const int descriptor = ::mkostemp(temporary.data(), O_CLOEXEC);
@@ -93,9 +97,7 @@ Result<void> NewFile::commit() {
     const bool named = existing_ == Existing::replace ? ::rename(temporary_.c_str(), path_.c_str()) == 0
                                                       : ::link(temporary_.c_str(), path_.c_str()) == 0;
     if (!named) {
-        return errno == EEXIST
-                   ? Failure{FailureKind::usage, path_.string() + ": there is something of that name already"}
-                   : storage(path_, errno);
+        return errno == EEXIST ? name_taken(path_) : storage(path_, errno);
     }
     if (existing_ == Existing::refuse) {
         ::unlink(temporary_.c_str());

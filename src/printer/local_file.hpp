@@ -38,6 +38,9 @@ private:
     Existing existing_;
 };
 
+/// FailureKind::usage: the name of a file that would be written is taken.
+[[nodiscard]] Failure name_taken(const std::filesystem::path& path);
+
 /// The bytes of a regular file. FailureKind::input: it is none, cannot be read, or has more than `max_bytes`.
 [[nodiscard]] Result<std::string> read_file(const std::filesystem::path& path, std::uint64_t max_bytes);
 

@@ -47,15 +47,14 @@ Failure unknown_to(const PrinterClient& printer, std::string_view command, std::
                                       "=on behind the profile's name"};
 }
 
-/// Sends what is for one counter of the job. The printer passes over a counter that the job has not; it says which it
-/// has, unless its firmware does not know `?AC`.
+/// Sends what is for one counter of the job, or for all (0). The printer passes over one that the job has not; it says
+/// how many there are, unless its firmware does not know `?AC`.
 Result<Json> sent_to_counter(PrinterClient& printer, std::uint32_t counter, const protocol::Message& message) {
     auto said = sent(printer, message);
     const auto has = said ? printer.ask<protocol::JobCounters>(Parameter::AC) : std::nullopt;
     if (has && counter > has->counters.size()) {
-        return not_taken("the job has " + (has->counters.empty()
-                                               ? std::string{"no counter"}
-                                               : "the counters 1 to " + std::to_string(has->counters.size())));
+        return not_taken("the job has " + (has->counters.empty() ? "no" : std::to_string(has->counters.size())) +
+                         (has->counters.size() == 1 ? " counter" : " counters"));
     }
     return said;
 }
@@ -169,8 +168,12 @@ constexpr std::array counters_set_arguments{
     Argument{.name = "product", .help = "Set the product counter", .type = number},
     Argument{.name = "stop_after", .help = "Stop after so many products; 0: never", .type = number}};
 constexpr std::array counter_limit_arguments{
-    Argument{
-        .name = "counter", .help = "Which counter of the job", .type = number, .required = true, .positional = true},
+    Argument{.name = "counter",
+             .help = "Which counter of the job",
+             .type = number,
+             .required = true,
+             .positional = true,
+             .smallest = 1},
     Argument{.name = "limit", .help = "start or end", .required = true, .positional = true},
     Argument{.name = "value",
              .help = "Taken when the counter reaches its end; not stored in the job",

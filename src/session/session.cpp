@@ -80,7 +80,6 @@ void Session::take_frame(const protocol::Frame& frame, Instant now, Actions& act
     }
     ++statistics_.frames_received;
     heard_at_ = now;
-    answers_missing_ = 0;
     if (settings_.line.crc) {
         take_secured(frame, now, actions);
     } else {
@@ -165,13 +164,12 @@ void Session::forget_mail_before_status(Instant now, Actions& actions) {
     }
 }
 
-/// Only `?RS` and `?SM` must be answered. One that is not, while the line was busy with what goes the other way, may
-/// have fallen to noise; not several.
+/// Only `?RS` and `?SM` must be answered. On a serial line one answer may have fallen to noise while the line was busy
+/// for long with what goes the other way: there it must have been free besides.
 void Session::time_out(Parameter what, Instant now, Actions& actions) {
     const bool needed = what == Parameter::RS || what == Parameter::SM;
-    const bool waited = now - heard_at_ >= settings_.reply_timeout;
-    const bool line_was_free = now - line_free_at_ >= settings_.reply_timeout;
-    if (needed && waited && (line_was_free || ++answers_missing_ == max_answers_missing)) {
+    const Instant quiet_since = settings_.line.bytes_per_second > 0 ? std::max(heard_at_, line_free_at_) : heard_at_;
+    if (needed && now - quiet_since >= settings_.reply_timeout) {
         feeder_.on_silence(actions);
     } else {
         feeder_.on_lost_answer(what, now, actions);
@@ -283,10 +281,14 @@ void Session::on_time(Instant now, Effects& out) {
             ++i;
             continue;
         }
-        const Parameter what = inquiries_[i].what;
+        const Inquiry inquiry = inquiries_[i];
         inquiries_.erase(i);
         actions.clear();
-        time_out(what, now, actions);
+        if (inquiry.given_up) {
+            feeder_.on_lost_answer(inquiry.what, now, actions);
+        } else {
+            time_out(inquiry.what, now, actions);
+        }
         carry_out(actions, now, out);
         i = 0;
     }

@@ -56,7 +56,8 @@ struct SessionSettings {
     protocol::EscapeMode escapes = protocol::EscapeMode::backslash;
     /// The charsets of a record's fields; the end marker has as many, each a blank.
     std::vector<protocol::Charset> charsets{protocol::Charset::latin1};
-    /// An inquiry unanswered for this long is lost; a printer from which nothing came for as long is silent.
+    /// An inquiry unanswered for this long is lost; a printer from which nothing came for as long is silent. A serial
+    /// line must have been free for as long, too.
     Duration reply_timeout = std::chrono::seconds{2};
     protocol::LineSettings line;
     /// How long the last commands (`!ST`, `!EQ`) may take to be written before the link is closed all the same.
@@ -107,9 +108,9 @@ private:
     struct Inquiry {
         protocol::Parameter what = protocol::Parameter::SM;
         Instant deadline{};
+        bool given_up = false; ///< by the host, which tells nothing about the printer
     };
     static constexpr std::size_t max_inquiries = 64;
-    static constexpr int max_answers_missing = 3;
 
     void take_damage(std::uint64_t bytes, Instant now);
     void take_frame(const protocol::Frame& frame, Instant now, feeder::Actions& actions);
@@ -155,8 +156,7 @@ private:
     std::optional<RecordsWritten> staged_records_;    ///< in the outbox, for the next write
     std::optional<RecordsWritten> records_under_way_; ///< with the write under way
     BoundedList<Inquiry, max_inquiries> inquiries_;
-    Instant heard_at_{};      ///< of the last frame
-    int answers_missing_ = 0; ///< that were needed, and nothing has come since
+    Instant heard_at_{}; ///< of the last frame
     SessionStatistics statistics_;
     bool connected_ = false;
     std::optional<feeder::End> end_; ///< the feeder has ended; its last commands may still be on the way

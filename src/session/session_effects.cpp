@@ -96,9 +96,10 @@ void Session::give_inquiries_up(Instant now) {
     secured_.give_up();
     for (Inquiry& inquiry : inquiries_) {
         inquiry.deadline = now;
+        inquiry.given_up = true;
     }
     while (const auto what = secured_.drop_inquiry()) {
-        inquiries_.push_back({*what, now});
+        inquiries_.push_back({*what, now, true});
     }
 }
 

@@ -82,14 +82,16 @@ Result<std::vector<std::string>> Fleet::open() {
         }
         addresses.push_back(*std::move(address));
     }
+    if (settings_.report) {
+        questions_.add(SIGUSR1);
+        wait_for_question();
+    }
     return addresses;
 }
 
 Result<void> Fleet::run() {
     if (settings_.report) {
         hiccups_.start();
-        questions_.add(SIGUSR1);
-        wait_for_question();
     }
     for (const auto& simulator : simulators_) {
         simulator->start();

@@ -51,13 +51,6 @@ Simulator::Simulator(SimulatorSettings settings, boost::asio::io_context& io)
 }
 
 Result<std::string> Simulator::open() {
-    signals_.add(SIGINT);
-    signals_.add(SIGTERM);
-    signals_.async_wait([this](const error_code& error, int) {
-        if (!error) {
-            shut_down();
-        }
-    });
     const auto line = server_.open_serial();
     if (!line) {
         return line.error();
@@ -70,6 +63,13 @@ Result<std::string> Simulator::open() {
         }
         tape_ = std::move(*tape);
     }
+    signals_.add(SIGINT);
+    signals_.add(SIGTERM);
+    signals_.async_wait([this](const error_code& error, int) {
+        if (!error) {
+            shut_down();
+        }
+    });
     return address;
 }
 

@@ -49,7 +49,7 @@ public:
     /// Runs in the thread of `io`, which outlives it.
     Simulator(SimulatorSettings settings, boost::asio::io_context& io);
 
-    /// Opens tape and socket; the address it listens on.
+    /// Opens tape and socket; the address it listens on. From then on SIGINT and SIGTERM end it.
     [[nodiscard]] Result<std::string> open();
     /// Serves until SIGINT or SIGTERM. The failure if the tape is not complete.
     [[nodiscard]] Result<void> run();

@@ -45,8 +45,8 @@ Result<RecordPage> Spool::read_page(JobId id, RecordNumber number) {
 }
 
 Result<bool> Spool::has_escapes(JobId id) {
-    auto statement =
-        state_->database->prepare("SELECT 1 FROM pages WHERE job = ?1 AND instr(frames, x'5C') > 0 LIMIT 1");
+    auto statement = state_->database->prepare("SELECT 1 FROM pages INDEXED BY pages_with_escapes WHERE job = ?1 AND "
+                                               "instr(frames, x'5C') > 0 LIMIT 1");
     if (!statement) {
         return statement.error();
     }

@@ -61,7 +61,7 @@ class Direct(harness.TestCase):
         self.address = printer.address
         self.assertIn("COUNTER.JOB", self.done("jobs").out.upper())
         self.assert_one_clear_line(4, self.linefeed("counter", "limit", "1", "start", "5"), "jet3 knows no =CP")
-        self.assert_one_clear_line(4, self.linefeed("counter", "reset", "2"), "the job has no counter")
+        self.assert_one_clear_line(4, self.linefeed("counter", "reset", "2"), "the job has no counters")
 
     def test_not_done(self):
         self.done("power off --yes")
@@ -108,8 +108,16 @@ class Direct(harness.TestCase):
         self.done("status")  # clears the word that the job has changed
         self.done("record", file, "--for", "0.3", "--interval", "0.05")
         self.assert_one_clear_line(2, self.linefeed("record", file, "--for", "0.1"), "already")
+        self.done("record", file, "--for", "0.3", "--interval", "0.05", "--replace")
         lines = [json.loads(line) for line in file.read_text(encoding="utf-8").splitlines()]
         self.assertEqual({"sent", "received"}, {line["direction"] for line in lines})
+        away = "tcp://127.0.0.1:1"
+        before = file.read_bytes()
+        self.assert_one_clear_line(3, self.linefeed("record", file, "--replace", address=away), away)
+        self.assertEqual(before, file.read_bytes(), "a printer that is away leaves what was recorded")
+        other = self.directory / "other.jsonl"
+        self.assert_one_clear_line(3, self.linefeed("record", other, address=away), away)
+        self.assertFalse(other.exists(), "and nothing in the way of the next try")
         shown = self.done("replay", file, "--fast").out
         self.assertRegex(shown, r"-> \?RS  machine state\?")
         self.assertRegex(shown, r"<- =SM  mailing status: depth 256, entries 0")

@@ -121,6 +121,7 @@ class Files(harness.TestCase):
         png = self.directory / "p.png"
         self.done("preview", "--png", png, "--scale", "1")
         self.assert_one_clear_line(2, self.linefeed("preview", "--png", png), "already")
+        self.done("preview", "--png", png, "--scale", "1", "--replace")
         self.assertEqual(rows, png_dots(png.read_bytes()))
         self.assertEqual(rows[0], self.done("preview", "--ascii").out.splitlines()[0], "no line is broken where there is no terminal")
         for words in (("files", "frob"), ("files",), ("script", "frob", "x")):

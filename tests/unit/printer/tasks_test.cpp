@@ -284,7 +284,9 @@ TEST(Tasks, shouldSendCommandsAsTheManualHasThem) {
     EXPECT_TRUE(printer.run("counter limit", {{"counter", 2}, {"limit", "end"}, {"value", 9'999'999'999}}));
     EXPECT_TRUE(printer.run("counter reset", {{"counter", 0}}));
     EXPECT_THAT(printer.run("counter limit", {{"counter", 3}, {"limit", "end"}, {"value", 9}}).error().message,
-                HasSubstr("counters 1 to 2"));
+                HasSubstr("the job has 2 counters"));
+    EXPECT_EQ(printer.run("counter limit", {{"counter", 0}, {"limit", "end"}, {"value", 9}}).error().kind,
+              FailureKind::usage);
     EXPECT_EQ(printer.run("counter reset", {{"counter", 3}}).error().kind, FailureKind::stopped);
     EXPECT_TRUE(printer.run("parameter set", {{"type", "delay"}, {"value", 700}}));
     const std::string heard = printer.heard();

@@ -37,6 +37,9 @@ struct Watching : FrameObserver {
 
 class SecuredSessionTest : public testing::Test {
 protected:
+    explicit SecuredSessionTest(const SessionSettings& settings = secured_settings())
+        : host_(settings, {}, &watching_) {}
+
     /// What happens to the frame that the host sent.
     enum class Fate { arrives, refused, unannounced, lost, word_damaged, long_word, filled_word, answer_damaged };
 
@@ -156,7 +159,7 @@ protected:
 
     std::vector<std::unique_ptr<RecordPage>> pages_ = make_pages(1, records, 20, plain_text);
     Watching watching_;
-    Conversation host_{secured_settings(), {}, &watching_};
+    Conversation host_;
     std::function<Fate(const std::string& frame)> fate_ = [](const std::string&) { return Fate::arrives; };
     std::string frames_;
     std::uint32_t last_ = 0;
@@ -164,6 +167,44 @@ protected:
     std::string stop_at_ = "0";
     bool printing_ = false;
 };
+
+/// Where bytes need no time.
+class SecuredNetworkTest : public SecuredSessionTest {
+protected:
+    SecuredNetworkTest()
+        : SecuredSessionTest([] {
+            SessionSettings settings;
+            settings.line.crc = true;
+            return settings;
+        }()) {}
+    /// Nothing arrives, for so long.
+    void be_away(Duration time) {
+        fate_ = [](const std::string&) { return Fate::lost; };
+        for (const Instant back = host_.now + time; host_.now < back && !host_.ended;) {
+            static_cast<void>(answer_all());
+            host_.wait(milliseconds{5});
+        }
+    }
+};
+
+TEST_F(SecuredNetworkTest, shouldGiveAPrinterUpWhenItsFirstAnswerIsLost) {
+    print_through(2);
+    be_away(std::chrono::seconds{20});
+    EXPECT_TRUE(host_.ended);
+    EXPECT_EQ(host_.outcome.code, feeder::OutcomeCode::no_answer);
+}
+
+/// What was only waiting to be asked tells nothing about the printer.
+TEST_F(SecuredNetworkTest, shouldJudgeAPrinterThatWasAwayWhenItWasToStop) {
+    print_through(2);
+    be_away(milliseconds{2500});
+    ASSERT_FALSE(host_.ended);
+    host_.stop();
+    host_.wait(milliseconds{1});
+    fate_ = [](const std::string&) { return Fate::arrives; };
+    const std::string story = wait_for_end();
+    EXPECT_NE(story.find("stop_requested"), std::string::npos) << story;
+}
 
 TEST_F(SecuredSessionTest, shouldSendOneFrameAtATime) {
     host_.connect();

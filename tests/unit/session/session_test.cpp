@@ -1,5 +1,6 @@
 // One conversation: answers matched with inquiries, time-outs, damage, slow writes, pages, and the farewell.
 #include "conversation.hpp"
+#include "session/line_fit.hpp"
 
 namespace linefeed::session {
 namespace {
@@ -120,7 +121,66 @@ TEST(Session, shouldNotWaitLongerForALineThatIsAskedAllTheTime) {
         host.wake();
     }
     EXPECT_EQ(host.outcome.code, OutcomeCode::no_answer);
-    EXPECT_LE(host.now - heard, milliseconds{2500});
+    EXPECT_LE(host.now - heard, milliseconds{2010});
+}
+
+/// On a serial line there is one inquiry of a kind at a time: noise that takes one answer of each makes no silence.
+TEST(Session, shouldOutliveTheLossOfOneAnswerOfEachKindOnASerialLine) {
+    const auto pages = thousand_records();
+    SessionSettings settings;
+    settings.line.bytes_per_second = 11520;
+    fit_to_line(settings, 20);
+    Conversation host{settings};
+    std::uint32_t sent_through = 0;
+    std::string stop_at = "0";
+    bool started = false;
+    std::string lost; // kinds of inquiry whose next answer is lost
+    const auto answer = [&] {
+        std::istringstream frames{host.sent()};
+        for (std::string frame; std::getline(frames, frame);) {
+            const std::string what = frame.substr(2, 3);
+            if (const auto hit = lost.find(what); hit != std::string::npos) {
+                lost.erase(hit, what.size());
+            } else if (what == "?RS") {
+                host.receive(started ? printing : not_printing);
+            } else if (what == "?VS") {
+                host.receive("^0=VS1\t1\t1\t1\t1\t1\t1\t1\t1\t1\tS1\r");
+            } else if (what == "?JL") {
+                host.receive("^0=JLA\r");
+            } else if (what == "?CC") {
+                host.receive("^0=CC0\t0\t1000\r");
+            } else if (what == "?SM") {
+                host.receive(
+                    mail(sent_through > 0 ? sent_through - 1 : 0, 0, static_cast<std::uint32_t>(std::stoul(stop_at))));
+            } else if (what == "=CM") {
+                stop_at = frame.substr(5);
+            } else if (what == "=MR") {
+                sent_through = static_cast<std::uint32_t>(std::stoul(frame.substr(5)));
+            } else {
+                started = started || what == "!GO";
+            }
+        }
+    };
+    const auto pass = [&](seconds time) {
+        for (const Instant end = host.now + time; host.now < end && !host.ended;) {
+            host.wait(milliseconds{1});
+            answer();
+        }
+    };
+    host.connect();
+    pass(seconds{1});
+    host.grant(1, 1000);
+    pass(seconds{1});
+    for (const auto& page : pages) {
+        host.page(*page);
+    }
+    pass(seconds{5});
+    ASSERT_EQ(host.session.feeder().phase(), feeder::Phase::printing) << host.story();
+    lost = "?SM?RS";
+    pass(seconds{2});
+    ASSERT_EQ(lost, "");
+    pass(seconds{8});
+    EXPECT_FALSE(host.ended);
 }
 
 /// On a serial line an answer may be damaged: that stops nothing.

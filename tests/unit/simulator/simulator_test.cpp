@@ -248,6 +248,18 @@ TEST(Simulator, shouldCountWhatIsMissedBeforeTheFirstRecord) {
     EXPECT_GE(run.unprinted_products, 5U);
 }
 
+TEST(Simulator, shouldEndByASignalThatComesBeforeItRuns) {
+    SimulatorSettings settings = counting_misses();
+    settings.port = "0";
+    FleetSettings one;
+    one.report = testing::TempDir() + "linefeed_early_signal_test.json";
+    Fleet fleet{settings, one};
+    ASSERT_TRUE(fleet.open());
+    std::raise(SIGUSR1);
+    std::raise(SIGTERM);
+    EXPECT_TRUE(fleet.run());
+}
+
 TEST(Fleet, shouldRunSeveralPrintersAndReportOnEach) {
     SimulatorSettings settings = counting_misses();
     settings.port = "0";

@@ -152,7 +152,7 @@ TEST_F(SchemaTest, shouldTakeOverALargeLedgerInATimeThatGrowsWithItOnly) {
 }
 
 /// Files that go on with records of jobs from before first records were written down.
-TEST_F(SchemaTest, shouldMakeUpForTheFirstRecordsOfJobsFromBefore) {
+TEST_F(SchemaTest, shouldMakeUpForWhatIsKnownOfTheRecordsOfJobsFromBefore) {
     {
         Spool spool = open();
         static_cast<void>(make_job(spool, 30));
@@ -160,6 +160,7 @@ TEST_F(SchemaTest, shouldMakeUpForTheFirstRecordsOfJobsFromBefore) {
         static_cast<void>(make_job(spool, 10, 500));
     }
     ASSERT_EQ(sql("UPDATE pages SET crc = crc + 1 WHERE job = 3"), "") << "a damaged one holds up nothing";
+    ASSERT_EQ(sql("UPDATE pages SET frames = CAST(frames || x'5C' AS BLOB) WHERE job = 1 AND first = 11"), "");
     ASSERT_EQ(sql("DROP TABLE job_heads; DROP TABLE printers; DROP TABLE printer_memory; DROP INDEX "
                   "pages_with_escapes; PRAGMA user_version = 3"),
               "");
@@ -173,6 +174,8 @@ TEST_F(SchemaTest, shouldMakeUpForTheFirstRecordsOfJobsFromBefore) {
     EXPECT_EQ(found(22118), 1U);
     EXPECT_EQ(found(2), 0U);
     EXPECT_EQ(found(501), 0U);
+    EXPECT_TRUE(spool.has_escapes(JobId{1}).value());
+    EXPECT_FALSE(spool.has_escapes(JobId{2}).value());
 }
 
 TEST_F(SchemaTest, shouldEnforceForeignKeysAfterAMigration) {
