@@ -1,8 +1,10 @@
 // A session that prints on a simulated printer, over a line that does what the input says, byte by byte. It never
-// breaks, sends its records in order, ends once and gives every page back. With CRC32, whatever is damaged on the way,
-// every record is printed once and in order, and a text that is wrong is in doubt.
+// breaks, sends its records in order and none before its intent, ends once and gives every page back. A line without
+// faults has all printed. With CRC32, whatever is damaged on the way, the records are printed once and in order,
+// nothing is called printed that is not, and nothing with a wrong text.
 #include "base/assert.hpp"
 #include "protocol/frame_decoder.hpp"
+#include "session/line_fit.hpp"
 #include "session/session.hpp"
 #include "simulator/printer_model.hpp"
 
@@ -10,10 +12,10 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 namespace {
 
@@ -55,6 +57,7 @@ struct Choice {
 session::SessionSettings settings_of(const Choice& choice) {
     session::SessionSettings settings;
     settings.line = {.bytes_per_second = 11520, .crc = choice.crc};
+    session::fit_to_line(settings, text_of(records).size() + 10);
     return settings;
 }
 
@@ -96,6 +99,14 @@ public:
         session_.on_connected(now_, effects_);
         settle();
     }
+    /// Nothing but time has been in the input: products come, until the job is done.
+    void print_all() {
+        for (int i = 0; i < 400 && !ended_; ++i) {
+            carry();
+            print_go();
+        }
+        LINEFEED_ASSERT(outcome_ == feeder::OutcomeCode::finished && printed_through_ == RecordNumber{records});
+    }
     void end() {
         tell_text();
         session_.on_closed(now_, effects_);
@@ -117,7 +128,7 @@ public:
             break;
         case 2:
         case 3:
-            damage(to_host_, place * 5, what == 2 ? 0x02 : 0x80);
+            damage(to_host_, std::max(to_host_.size(), place + 2) - place - 2, what == 2 ? 0x02 : 0x80);
             break;
         case 4:
             to_printer_.erase(0, place == 0 ? std::string::npos : place);
@@ -152,11 +163,15 @@ public:
                 carry();
             }
             break;
+        case 11:
+            reach(); // what the printer says then waits for the next
+            break;
         default:
             carry();
             break;
         }
     }
+    [[nodiscard]] static bool only_carries(std::uint8_t byte) { return byte >= 0x80 && (byte & 0x0FU) > 11; }
 
 private:
     static void damage(std::string& bytes, std::size_t place, int bits) {
@@ -227,13 +242,23 @@ private:
         }
         model_.clear_effects();
     }
+    /// Damage can make one right record of another without CRC32, and what is said in the printer's place is no damage.
+    [[nodiscard]] bool is_judged() const { return choice_.crc && !choice_.text; }
     void judge(const simulator::Printed& print) {
-        if (choice_.crc && !choice_.text && print.source == simulator::PrintSource::record) {
-            LINEFEED_ASSERT(print.number == printed_through_.next());
-            printed_through_ = print.number;
-            if (print.text != text_of(print.number.value())) {
-                wrong_ = print.number;
-            }
+        if (print.source != simulator::PrintSource::record) {
+            return;
+        }
+        LINEFEED_ASSERT(!is_judged() || print.number == printed_through_.next());
+        printed_through_ = print.number;
+        if (print.text != text_of(print.number.value())) {
+            wrong_.push_back(print.number);
+        }
+    }
+    void judge_called_printed(RecordNumber first, RecordNumber through) const {
+        if (is_judged()) {
+            LINEFEED_ASSERT(through <= printed_through_);
+            LINEFEED_ASSERT(std::ranges::none_of(
+                wrong_, [=](RecordNumber number) { return first <= number && number <= through; }));
         }
     }
     /// As a link and a ledger that are quick.
@@ -258,25 +283,34 @@ private:
         } else if (const auto* const adopt = std::get_if<feeder::AdoptRun>(&effect)) {
             grant(RecordNumber{1}, adopt->sent_through);
         } else if (const auto* const intent = std::get_if<feeder::AskIntent>(&effect)) {
-            session_.on_durable(intent->through, now_, effects_);
+            durable_through_ = intent->through;
+            session_.on_durable(durable_through_, now_, effects_);
+        } else if (const auto* const confirm = std::get_if<feeder::ConfirmPrinted>(&effect)) {
+            judge_called_printed(RecordNumber{1}, confirm->through);
         } else if (const auto* const settle = std::get_if<feeder::Settle>(&effect)) {
             take_down(*settle);
             session_.on_settled(now_, effects_);
         } else if (const auto* const written = std::get_if<session::RecordsWritten>(&effect)) {
             LINEFEED_ASSERT(written->records.first() == sent_through_.next());
             sent_through_ = written->records.last();
+            LINEFEED_ASSERT(sent_through_ <= durable_through_);
         } else if (std::holds_alternative<session::ReleasePage>(effect)) {
             ++pages_released_;
-        } else if (std::holds_alternative<feeder::End>(effect)) {
+        } else if (const auto* const end = std::get_if<feeder::End>(&effect)) {
             LINEFEED_ASSERT(!ended_);
             ended_ = true;
+            outcome_ = end->outcome.code;
+            LINEFEED_ASSERT(!is_judged() || outcome_ != feeder::OutcomeCode::finished ||
+                            printed_through_ == RecordNumber{records});
         } else if (std::holds_alternative<session::CloseLink>(effect)) {
             closed_ = true;
         }
     }
     void take_down(const feeder::Settle& settle) {
-        LINEFEED_ASSERT(!wrong_ || settle.provisional || settle.verdict.in_doubt.contains(*wrong_));
-        settled_through_ = settle.verdict.printed.empty() ? settled_through_ : settle.verdict.printed.last();
+        if (!settle.verdict.printed.empty()) {
+            settled_through_ = settle.verdict.printed.last();
+            judge_called_printed(settle.verdict.printed.first(), settled_through_);
+        }
         in_doubt_ = in_doubt_ || !settle.verdict.in_doubt.empty();
     }
     void begin_run() {
@@ -290,7 +324,8 @@ private:
     }
     void grant(RecordNumber first, RecordNumber sent_through) {
         sent_through_ = sent_through;
-        session_.on_granted(RecordRange::closed(first, RecordNumber{records}), RecordNumber{records}, now_, effects_);
+        durable_through_ = RecordNumber{open_records};
+        session_.on_granted(RecordRange::closed(first, RecordNumber{records}), durable_through_, now_, effects_);
         session_.on_page(&page_, now_, effects_);
         ++pages_lent_;
     }
@@ -306,10 +341,12 @@ private:
     std::string to_host_;
     std::string said_;
     RecordNumber sent_through_{};
-    RecordNumber settled_through_{};      ///< surely printed
-    bool in_doubt_ = false;               ///< a record before
-    RecordNumber printed_through_{};      ///< on the tape
-    std::optional<RecordNumber> wrong_{}; ///< printed with a text that it has not
+    RecordNumber settled_through_{}; ///< surely printed
+    bool in_doubt_ = false;          ///< a record before
+    RecordNumber durable_through_{};
+    RecordNumber printed_through_{};    ///< on the tape
+    std::vector<RecordNumber> wrong_{}; ///< printed with a text that is not theirs
+    feeder::OutcomeCode outcome_{};
     std::size_t pages_lent_ = 0;
     std::size_t pages_released_ = 0;
     bool ended_ = false;
@@ -325,6 +362,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     Line line{Choice{data[0]}};
     for (std::size_t i = 1; i < size; ++i) {
         line.step(data[i]);
+    }
+    if (std::all_of(data + 1, data + size, Line::only_carries)) {
+        line.print_all();
     }
     line.end();
     return 0;
