@@ -191,7 +191,8 @@ void SerialLine::transmit() {
     const std::size_t size = std::min({due, waiting_.size(), chunk});
     const std::string arriving = over_the_line(std::string_view{waiting_}.substr(0, size));
     if (terminal_.is_open() && !arriving.empty()) {
-        static_cast<void>(::write(terminal_.native_handle(), arriving.data(), arriving.size()));
+        [[maybe_unused]] const auto written = // what a host does not read in time is lost, as on a line
+            ::write(terminal_.native_handle(), arriving.data(), arriving.size());
     }
     waiting_.erase(0, size);
     sent_until_ += static_cast<Duration::rep>(size) * byte_time_;
