@@ -61,7 +61,7 @@ void print_all(const Options& options) {
         jobs.push_back(import_job(spool, printer, options.records));
     }
     daemon::FeedThread feed{options.real_time};
-    daemon::StoreThread store{spool};
+    store::StoreThread store{spool};
     std::cerr << feed.start() << '\n';
     std::vector<std::unique_ptr<daemon::JobRun>> runs;
     for (std::size_t place = 0; place < jobs.size(); ++place) {

@@ -7,7 +7,7 @@
 set -euo pipefail
 cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.."
 build=${LINEFEED_COVERAGE_BUILD:-build/coverage}
-libraries=(protocol feeder session spool daemon) # whose unit tests run
+libraries=(protocol feeder session spool store) # whose unit tests run
 
 # name, lines %, branches %, files
 thresholds=(
@@ -17,7 +17,7 @@ thresholds=(
 strict=(
     "feeder src/feeder/.*"
     "session src/session/.*"
-    "ledger src/spool/(.*_)?ledger(_.*)?[.][ch]pp src/spool/spool_verify[.]cpp src/daemon/ledger_keeper[.]cpp src/daemon/store_work[.]cpp"
+    "ledger src/spool/(.*_)?ledger(_.*)?[.][ch]pp src/spool/spool_verify[.]cpp src/store/ledger_keeper[.]cpp src/store/store_work[.]cpp"
 )
 
 mkdir -p "$build"

@@ -190,7 +190,7 @@ int run(const Options& options) {
     real_time.priority = options.priority;
     real_time.processor = processor_of_hosts();
     daemon::FeedThread feed{real_time};
-    daemon::StoreThread store{print_job.spool()};
+    store::StoreThread store{print_job.spool()};
     const std::string granted = feed.start();
     daemon::JobRun job_run{{feed, store},           print_job.spool(), print_job.job(),
                            print_job.job().records, std::nullopt,      settings};

@@ -7,6 +7,7 @@
 #include "daemon/line_use.hpp"
 #include "daemon/record_text.hpp"
 #include "daemon/wall_clock.hpp"
+#include "store/store_thread.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -125,7 +126,7 @@ Result<RecordRange> PrintCommand::wanted_range() const {
 
 Result<ExitCode> PrintCommand::print(spool::Spool& spool, const daemon::JobRunSettings& settings) {
     daemon::FeedThread feed{options_.real_time};
-    daemon::StoreThread store{spool};
+    store::StoreThread store{spool};
     threads_.emplace(daemon::RunThreads{feed, store});
     if (const std::string granted = feed.start(); !granted.empty()) {
         view_.message(granted);

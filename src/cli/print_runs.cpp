@@ -5,6 +5,7 @@
 #include "cli/print_report.hpp"
 #include "daemon/line_use.hpp"
 #include "daemon/other_jobs.hpp"
+#include "store/ledger_keeper.hpp"
 
 #include <iostream>
 #include <poll.h>
@@ -101,7 +102,7 @@ Result<feeder::Outcome> PrintCommand::print_runs(spool::Spool& spool, const daem
         if (const auto ready = import_first_records(spool); !ready) {
             return interrupted_ ? Result<feeder::Outcome>{outcome} : ready.error();
         }
-        auto open = daemon::find_open_issue(spool, job_.id);
+        auto open = store::find_open_issue(spool, job_.id);
         const auto state = spool.ledger_state(job_.id);
         const auto wanted = wanted_range();
         if (!open || !state || !wanted) {

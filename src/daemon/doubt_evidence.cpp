@@ -1,7 +1,7 @@
 #include "daemon/doubt_evidence.hpp"
 
-#include "daemon/evidence_json.hpp"
 #include "daemon/record_ranges.hpp"
+#include "store/evidence_json.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -74,7 +74,7 @@ Result<DoubtRows> find_rows(spool::Spool& spool, spool::JobId job, const spool::
 
 /// The prints that the counter has seen since the run began; absent = it does not tell: not reported, of another
 /// printer, or it does not move.
-std::optional<std::uint32_t> prints_of(const RunStart& start, const SettleWords& words) {
+std::optional<std::uint32_t> prints_of(const store::RunStart& start, const SettleWords& words) {
     const bool same_printer =
         start.serial_number.empty() || words.serial_number.empty() || start.serial_number == words.serial_number;
     if (!same_printer || !start.total_before || !words.total_prints || *words.total_prints == *start.total_before) {
@@ -93,7 +93,7 @@ void judge(DoubtEvidence& evidence, const DoubtRows& rows) {
                         "thrown some of them away";
         return;
     }
-    const auto start = parse_run_start(rows.run_started->entry.evidence);
+    const auto start = store::parse_run_start(rows.run_started->entry.evidence);
     const auto prints = start ? prints_of(*start, words) : std::nullopt;
     if (!prints) {
         return;

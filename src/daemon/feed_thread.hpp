@@ -2,9 +2,9 @@
 // operating system grants it once, whoever prints. Nothing on it may block, so no printer can hold up another.
 #pragma once
 
-#include "daemon/event_signal.hpp"
 #include "daemon/real_time.hpp"
 #include "link/handler_memory.hpp"
+#include "store/event_signal.hpp"
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/posix/stream_descriptor.hpp>
@@ -55,7 +55,7 @@ private:
 
     RealTimeSettings settings_;
     boost::asio::io_context context_{BOOST_ASIO_CONCURRENCY_HINT_UNSAFE};
-    EventSignal door_signal_;
+    store::EventSignal door_signal_;
     boost::asio::posix::stream_descriptor door_;
     std::mutex outside_; ///< among those who call let_in(); the feed thread never takes it
     boost::lockfree::spsc_queue<Guest*, boost::lockfree::capacity<max_waiting>> waiting_;

@@ -14,12 +14,12 @@ using session::Effects;
 using session::Session;
 
 JobRun::JobRun(RunThreads threads, spool::Spool& spool, const spool::Job& job, RecordRange wanted,
-               const std::optional<OpenIssue>& open, const JobRunSettings& settings, Supply* supply)
+               const std::optional<store::OpenIssue>& open, const JobRunSettings& settings, store::Supply* supply)
     : threads_(threads)
     , settings_(settings)
-    , store_(StoreWork{spool, job.id, LedgerKeeper{spool, job.id, wanted, link::to_string(settings.printer), open},
-                       supply})
-    , session_(settings.session, make_plan(open, job.id, wanted), settings.frames) {
+    , store_(store::StoreWork{
+          spool, job.id, store::LedgerKeeper{spool, job.id, wanted, link::to_string(settings.printer), open}, supply})
+    , session_(settings.session, store::make_plan(open, job.id, wanted), settings.frames) {
     if (settings.meters != nullptr) {
         measure_.emplace(*settings.meters, open ? open->facts.printed_through : RecordNumber{});
     }
@@ -95,7 +95,7 @@ void JobRun::on_effect(const session::Effect& effect) {
     } else if (const auto* adopt = std::get_if<feeder::AdoptRun>(&effect)) {
         push(*adopt);
     } else if (const auto* release = std::get_if<session::ReleasePage>(&effect)) {
-        push(PageReturned{release->page});
+        push(store::PageReturned{release->page});
     } else if (const auto* notice = std::get_if<feeder::Notice>(&effect)) {
         printing_ = printing_ || notice->code == feeder::NoticeCode::printing_started;
         notices_.push(*notice); // if nobody reads them, later ones are lost, and nothing else
@@ -105,7 +105,7 @@ void JobRun::on_effect(const session::Effect& effect) {
     }
 }
 
-void JobRun::push(const StoreRequest& request) {
+void JobRun::push(const store::StoreRequest& request) {
     // push_cumulative() leaves half of the ring to requests that must not wait; there are fewer of those.
     LINEFEED_ASSERT(store_.push(request));
 }
@@ -113,7 +113,7 @@ void JobRun::push(const StoreRequest& request) {
 /// Intents and confirmations grow: when the store is behind, only the latest matters.
 void JobRun::push_cumulative() {
     const bool last_chance = session_.feeder().phase() == feeder::Phase::ended;
-    const std::size_t room = last_chance ? 2 : Store::ring_capacity / 2;
+    const std::size_t room = last_chance ? 2 : store::Store::ring_capacity / 2;
     if (intent_ && store_.room() > room && store_.push(*intent_)) {
         intent_.reset();
     }
@@ -263,10 +263,10 @@ void JobRun::take_stop_request() {
 }
 
 void JobRun::take_replies() {
-    StoreReply reply;
+    store::StoreReply reply;
     while (!finished() && store_.pop(reply)) {
         edge_->link.call(
-            [&reply](Session& session, Instant at, Effects& effects) { deliver(reply, session, at, effects); });
+            [&reply](Session& session, Instant at, Effects& effects) { store::deliver(reply, session, at, effects); });
         push_cumulative();
     }
 }

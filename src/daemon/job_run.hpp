@@ -5,13 +5,13 @@
 #include "daemon/feed_thread.hpp"
 #include "daemon/frame_history.hpp"
 #include "daemon/run_measure.hpp"
-#include "daemon/store_thread.hpp"
 #include "feeder/outcome.hpp"
 #include "link/handler_memory.hpp"
 #include "link/printer_address.hpp"
 #include "link/printer_link.hpp"
 #include "session/session.hpp"
 #include "spool/spool.hpp"
+#include "store/store_thread.hpp"
 
 #include <boost/asio/posix/stream_descriptor.hpp>
 
@@ -56,7 +56,7 @@ struct RunProgress {
 /// What all runs of a process share.
 struct RunThreads {
     FeedThread& feed;
-    StoreThread& store;
+    store::StoreThread& store;
 };
 
 /// `supply` = the import of the job, if it is still running. Flow: construct, start(), poll progress() and
@@ -65,7 +65,8 @@ struct RunThreads {
 class JobRun final : private link::EffectHandler, private FeedThread::Guest {
 public:
     JobRun(RunThreads threads, spool::Spool& spool, const spool::Job& job, RecordRange wanted,
-           const std::optional<OpenIssue>& open, const JobRunSettings& settings, Supply* supply = nullptr);
+           const std::optional<store::OpenIssue>& open, const JobRunSettings& settings,
+           store::Supply* supply = nullptr);
     ~JobRun() override;
     JobRun(const JobRun&) = delete;
     JobRun& operator=(const JobRun&) = delete;
@@ -95,7 +96,7 @@ private:
     void wait_for_replies();
     void take_stop_request();
     void take_replies();
-    void push(const StoreRequest& request);
+    void push(const store::StoreRequest& request);
     void push_cumulative();
     void end(const feeder::End& end);
     void leave();
@@ -110,7 +111,7 @@ private:
 
     RunThreads threads_;
     JobRunSettings settings_;
-    Store store_;
+    store::Store store_;
     session::Session session_;
     std::optional<RunMeasure> measure_;
     std::optional<Edge> edge_;
@@ -121,7 +122,7 @@ private:
     std::uint64_t frames_published_ = 0; ///< the last that the figures below include
 
     boost::lockfree::spsc_queue<feeder::Notice, boost::lockfree::capacity<64>> notices_;
-    EventSignal news_;
+    store::EventSignal news_;
     std::atomic<bool> stop_requested_{false}; ///< set by any thread, with the store's replies_signal()
     std::atomic<bool> printing_{false};
     std::atomic<std::uint64_t> range_{0}; ///< first << 32 | last; 0 = none

@@ -17,7 +17,7 @@ bool is_shown(Duration border) {
 
 } // namespace
 
-HistogramView view(const SharedHistogram& histogram) {
+HistogramView view(const store::SharedHistogram& histogram) {
     HistogramView shown;
     Duration from = Duration::zero();
     for (const Duration border : histogram_borders) {

@@ -6,7 +6,7 @@ namespace {
 
 struct OtherJob {
     spool::Job job;
-    OpenIssue open;
+    store::OpenIssue open;
 };
 
 /// The jobs besides `job` with open records at that printer, oldest first.
@@ -17,7 +17,7 @@ Result<std::vector<OtherJob>> others_at(spool::Spool& spool, spool::JobId job, c
     }
     std::vector<OtherJob> others;
     for (const spool::JobId id : *open_jobs) {
-        auto open = find_open_issue(spool, id);
+        auto open = store::find_open_issue(spool, id);
         auto other = spool.job(id);
         if (!open || !other) {
             return open ? other.error() : open.error();
@@ -53,8 +53,8 @@ Result<std::optional<Hindrance>> settle_other_jobs(RunThreads threads, spool::Sp
         run.start();
         watch(run, other.job.id);
         run.join();
-        Result<std::optional<OpenIssue>> left{std::optional<OpenIssue>{}};
-        threads.store.call([&](spool::Spool& owned) { left = find_open_issue(owned, other.job.id); });
+        Result<std::optional<store::OpenIssue>> left{std::optional<store::OpenIssue>{}};
+        threads.store.call([&](spool::Spool& owned) { left = store::find_open_issue(owned, other.job.id); });
         if (!left) {
             return left.error();
         }

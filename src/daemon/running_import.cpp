@@ -95,7 +95,7 @@ void RunningImport::notify() {
     }
 }
 
-void RunningImport::wake(EventSignal* waiting) {
+void RunningImport::wake(store::EventSignal* waiting) {
     const std::lock_guard lock{mutex_};
     waiting_ = waiting;
 }

@@ -3,10 +3,10 @@
 // is to print; the thread goes on only to find the other bad rows.
 #pragma once
 
-#include "daemon/supply.hpp"
 #include "intake/import.hpp"
 #include "intake/page_maker.hpp"
 #include "spool/spool.hpp"
+#include "store/supply.hpp"
 
 #include <atomic>
 #include <chrono>
@@ -19,7 +19,7 @@
 namespace linefeed::daemon {
 
 /// Flow: construct, start(); then step() whenever wants_step(), until over(). The spool must outlive it.
-class RunningImport final : public Supply {
+class RunningImport final : public store::Supply {
 public:
     /// `options.on_progress` and `options.close_page` are its own business. Precondition: intake::check_charsets().
     RunningImport(spool::JobImport job, std::unique_ptr<intake::RowSource> source, const spool::JobSpec& spec,
@@ -37,7 +37,7 @@ public:
     [[nodiscard]] RecordRange durable() const override { return job_.durable(); }
     [[nodiscard]] bool end_known() const override { return finished_job_.has_value(); }
     [[nodiscard]] const std::optional<Failure>& failure() const override { return failure_; }
-    void wake(EventSignal* waiting) override;
+    void wake(store::EventSignal* waiting) override;
 
     [[nodiscard]] spool::JobId job() const { return job_.id(); }
     /// No record can be behind this one.
@@ -74,15 +74,15 @@ private:
     spool::JobSpec spec_;
     intake::ImportOptions options_;
     RecordNumber bound_;
-    EventSignal own_signal_; ///< for wait()
+    store::EventSignal own_signal_; ///< for wait()
     std::thread thread_;
 
     std::optional<Failure> failure_;
     std::optional<spool::Job> finished_job_;
     std::optional<intake::ImportReport> report_;
 
-    std::mutex mutex_;               ///< for what follows
-    EventSignal* waiting_ = nullptr; ///< besides own_signal_
+    std::mutex mutex_;                      ///< for what follows
+    store::EventSignal* waiting_ = nullptr; ///< besides own_signal_
     std::condition_variable room_;
     std::deque<RecordPage> pages_;
     std::size_t bytes_ = 0;

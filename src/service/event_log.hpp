@@ -2,8 +2,8 @@
 // durable, so that nobody ever sees an event whose number another one gets after a crash.
 #pragma once
 
-#include "daemon/store_thread.hpp"
 #include "spool/ticket.hpp"
+#include "store/store_thread.hpp"
 
 #include <cstdint>
 #include <functional>
@@ -20,7 +20,7 @@ class EventLog {
 public:
     /// `listen` hears of each event at once, on the thread where it happens; it must not call back.
     using Listener = std::function<void(const spool::Event&)>;
-    EventLog(daemon::StoreThread& store, Listener listen)
+    EventLog(store::StoreThread& store, Listener listen)
         : store_(store)
         , listen_(std::move(listen)) {}
     ~EventLog();
@@ -44,7 +44,7 @@ public:
 private:
     void write(spool::Spool& spool);
 
-    daemon::StoreThread& store_;
+    store::StoreThread& store_;
     Listener listen_;
     std::mutex mutex_; ///< for what follows
     std::vector<spool::Event> waiting_;

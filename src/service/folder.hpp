@@ -3,11 +3,11 @@
 #pragma once
 
 #include "config/settings.hpp"
-#include "daemon/event_signal.hpp"
 #include "daemon/operations.hpp"
 #include "intake/drop_folder.hpp"
 #include "service/batches.hpp"
 #include "service/event_log.hpp"
+#include "store/event_signal.hpp"
 
 #include <atomic>
 #include <cstdint>
@@ -71,7 +71,7 @@ private:
     bool autostart_;
     intake::DropSettings settings_;
     Batches batches_;
-    daemon::EventSignal wake_;
+    store::EventSignal wake_;
     std::atomic<bool> closing_{false};
 
     mutable std::mutex mutex_; ///< for what follows

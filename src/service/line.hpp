@@ -13,6 +13,7 @@
 #include "printer/task.hpp"
 #include "service/event_log.hpp"
 #include "service/spool_access.hpp"
+#include "store/ledger_keeper.hpp"
 
 #include <condition_variable>
 #include <functional>
@@ -157,7 +158,7 @@ private:
     [[nodiscard]] Result<Ending> print_runs(spool::JobId job);
     [[nodiscard]] bool is_stop_requested() const;
     [[nodiscard]] Result<daemon::JobRunSettings> run_settings(const spool::Job& job);
-    [[nodiscard]] Ending run(const JobFacts& facts, RecordRange wanted, const std::optional<daemon::OpenIssue>& open,
+    [[nodiscard]] Ending run(const JobFacts& facts, RecordRange wanted, const std::optional<store::OpenIssue>& open,
                              daemon::JobRunSettings& settings, daemon::NoisePatience& patience);
     void watch(daemon::JobRun& run, spool::JobId job);
     void take_notice(const feeder::Notice& notice, spool::JobId job);

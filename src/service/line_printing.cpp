@@ -8,9 +8,9 @@ namespace linefeed::service {
 
 namespace event_kind = daemon::event_kind;
 using daemon::JobRun;
-using daemon::OpenIssue;
 using feeder::OutcomeCode;
 using spool::RecordState;
+using store::OpenIssue;
 
 namespace {
 
@@ -23,7 +23,7 @@ struct Before {
 Result<Before> look(SpoolAccess& access, spool::JobId job) {
     return access.write([job](spool::Spool& spool) -> Result<Before> {
         auto facts = read_facts(spool, job);
-        auto open = daemon::find_open_issue(spool, job);
+        auto open = store::find_open_issue(spool, job);
         if (!facts || !open) {
             return facts ? open.error() : facts.error();
         }

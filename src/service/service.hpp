@@ -10,12 +10,12 @@
 #include "daemon/operations.hpp"
 #include "daemon/operator_word.hpp"
 #include "daemon/service_manager.hpp"
-#include "daemon/store_thread.hpp"
 #include "service/event_log.hpp"
 #include "service/folder.hpp"
 #include "service/line.hpp"
 #include "service/spool_access.hpp"
 #include "spool/json_text.hpp"
+#include "store/store_thread.hpp"
 
 #include <atomic>
 #include <cstdint>
@@ -201,7 +201,7 @@ private:
 
     spool::Spool spool_; ///< the store thread's from here on
     daemon::FeedThread feed_;
-    daemon::StoreThread store_;
+    store::StoreThread store_;
     SpoolAccess access_;
     EventLog events_;
     IntakeCounts counts_;

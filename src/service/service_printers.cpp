@@ -5,6 +5,7 @@
 #include "printer/printer_path.hpp"
 #include "printer/tasks.hpp"
 #include "service/service.hpp"
+#include "store/ledger_keeper.hpp"
 
 #include <chrono>
 
@@ -127,7 +128,7 @@ Result<void> Service::check_fifo_known(const std::string& printer) {
             return open_jobs.error();
         }
         for (const spool::JobId id : *open_jobs) {
-            const auto open = daemon::find_open_issue(spool, id);
+            const auto open = store::find_open_issue(spool, id);
             const auto facts = daemon::read_facts(spool, id);
             if (!open || !facts) {
                 return open ? facts.error() : open.error();

@@ -2,9 +2,9 @@
 // the job allow it, by itself. Only a job that was never begun starts by itself, and only while nothing else of its
 // printer has been begun and is not over.
 #include "daemon/events.hpp"
-#include "daemon/ledger_keeper.hpp"
 #include "daemon/record_text.hpp"
 #include "service/service.hpp"
+#include "store/ledger_keeper.hpp"
 
 #include <algorithm>
 
@@ -75,7 +75,7 @@ Result<void> Service::check_open_records(const JobFacts& facts, const std::strin
         return {};
     }
     const spool::JobId id = facts.job.id;
-    const auto open = access_.write([id](spool::Spool& spool) { return daemon::find_open_issue(spool, id); });
+    const auto open = access_.write([id](spool::Spool& spool) { return store::find_open_issue(spool, id); });
     if (!open || !*open) {
         return open ? Result<void>{} : open.error();
     }

@@ -1,10 +1,10 @@
 // What an operator says about records: which of those in doubt are printed, and which are to be printed once more. Both
 // become rows of the ledger with his name; nothing that stands there is taken away.
 #include "daemon/events.hpp"
-#include "daemon/evidence_json.hpp"
 #include "daemon/operator_word.hpp"
 #include "daemon/record_ranges.hpp"
 #include "service/service.hpp"
+#include "store/evidence_json.hpp"
 
 #include <algorithm>
 
@@ -77,7 +77,7 @@ Result<std::string> last_printer(spool::Spool& spool, spool::JobId job, const co
     if (!run) {
         return run.error();
     }
-    const auto start = *run ? daemon::parse_run_start((*run)->started.entry.evidence) : std::nullopt;
+    const auto start = *run ? store::parse_run_start((*run)->started.entry.evidence) : std::nullopt;
     for (const config::PrinterSettings& printer : settings.printers) {
         if (start && link::to_string(printer.address) == start->printer) {
             return printer.name;

@@ -2,8 +2,8 @@
 // runs; whoever only looks has a connection of his own and holds up nobody.
 #pragma once
 
-#include "daemon/store_thread.hpp"
 #include "spool/spool.hpp"
+#include "store/store_thread.hpp"
 
 #include <exception>
 #include <filesystem>
@@ -19,7 +19,7 @@ namespace linefeed::service {
 /// Any thread but the feed and the store thread. The store thread must outlive it.
 class SpoolAccess {
 public:
-    SpoolAccess(daemon::StoreThread& store, std::filesystem::path file)
+    SpoolAccess(store::StoreThread& store, std::filesystem::path file)
         : store_(store)
         , file_(std::move(file)) {}
 
@@ -46,7 +46,7 @@ public:
         give_back(std::move(*reader));
         return answer;
     }
-    [[nodiscard]] daemon::StoreThread& store() { return store_; }
+    [[nodiscard]] store::StoreThread& store() { return store_; }
 
     /// A job of which nothing was printed, step by step: nobody waits for all of it. One that the disk does not let go
     /// is remembered.
@@ -61,7 +61,7 @@ private:
 
     static constexpr std::size_t max_idle_readers = 4;
 
-    daemon::StoreThread& store_;
+    store::StoreThread& store_;
     std::filesystem::path file_;
     std::mutex mutex_; ///< for what follows
     std::vector<Reader> readers_;

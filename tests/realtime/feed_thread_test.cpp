@@ -66,7 +66,7 @@ protected:
 
     SpoolDirectory directory_;
     daemon::FeedThread feed_{{}};
-    std::optional<daemon::StoreThread> store_;
+    std::optional<store::StoreThread> store_;
     spool::Job job_;
     std::optional<simulator::Simulator> simulator_;
     std::string address_;
@@ -160,7 +160,7 @@ TEST(ManyPrintersFeedThreadTest, shouldNeitherAllocateNorLockNorTouchAFileInTheS
     }};
     {
         daemon::FeedThread feed{{}};
-        daemon::StoreThread store{directory.spool()};
+        store::StoreThread store{directory.spool()};
         static_cast<void>(feed.start());
         std::vector<daemon::LineMeters> meters(printers);
         std::vector<daemon::FrameHistory> frames(printers);

@@ -98,7 +98,7 @@ protected:
 
     SpoolDirectory directory_;
     daemon::FeedThread feed_{{}};
-    std::optional<daemon::StoreThread> store_;
+    std::optional<store::StoreThread> store_;
     boost::asio::io_context io_{1};
     std::vector<std::unique_ptr<simulator::Simulator>> simulators_;
     std::thread line_;

@@ -111,7 +111,7 @@ void Host::start(const daemon::OperatorWord& word) {
 /// The loop of PrintCommand::print_runs(), and what print() tells behind it.
 void Host::next_run() {
     while (!interrupted_) {
-        auto open = daemon::find_open_issue(*spool_, job_);
+        auto open = store::find_open_issue(*spool_, job_);
         const auto state = spool_->ledger_state(job_);
         if (!open || !state) {
             end_process(OutcomeCode::storage_failed);
@@ -163,7 +163,7 @@ void Host::end_process(OutcomeCode code) {
     if (spool_) {
         if (const auto state = spool_->ledger_state(job_)) {
             records_open_ = state->count(spool::RecordState::open) > RecordCount{0};
-            const auto open = daemon::find_open_issue(*spool_, job_);
+            const auto open = store::find_open_issue(*spool_, job_);
             knows_of_gap_ = open && *open && (*open)->facts.unclear;
             judge_.check_ledger(*state);
             ending_.in_doubt = state->ranges(spool::RecordState::in_doubt);

@@ -76,7 +76,7 @@ private:
     void next_run();
     void end_process(feeder::OutcomeCode code);
     [[nodiscard]] bool open_spool();
-    void begin_run(const std::optional<daemon::OpenIssue>& open);
+    void begin_run(const std::optional<store::OpenIssue>& open);
     void run_over();
     void die();
 

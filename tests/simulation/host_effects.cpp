@@ -8,7 +8,7 @@
 namespace linefeed::simulation {
 
 namespace {
-constexpr std::size_t request_ring = 256; ///< daemon::Store::ring_capacity
+constexpr std::size_t request_ring = 256; ///< store::Store::ring_capacity
 } // namespace
 
 void Host::carry_out() {
@@ -72,7 +72,7 @@ void Host::on_effect(const session::Effect& effect) {
         run.taken_over = context_.now;
         run.store.push(*adopt);
     } else if (const auto* release = std::get_if<session::ReleasePage>(&effect)) {
-        run.store.push(daemon::PageReturned{release->page});
+        run.store.push(store::PageReturned{release->page});
     } else if (const auto* notice = std::get_if<feeder::Notice>(&effect)) {
         context_.trace.note(context_.now, "notice", static_cast<std::uint64_t>(notice->code));
     } else if (const auto* end = std::get_if<feeder::End>(&effect)) {

@@ -34,9 +34,9 @@ std::optional<Instant> Host::taken_over() const {
     return run_ ? run_->taken_over : std::nullopt;
 }
 
-void Host::begin_run(const std::optional<daemon::OpenIssue>& open) {
+void Host::begin_run(const std::optional<store::OpenIssue>& open) {
     ++context_.counts.runs;
-    const feeder::FeederPlan plan = daemon::make_plan(open, job_, wanted_);
+    const feeder::FeederPlan plan = store::make_plan(open, job_, wanted_);
     session::SessionSettings settings;
     settings.feeder.open_nozzle = context_.scenario.open_nozzle;
     settings.charsets.resize(context_.scenario.two_fields ? 2 : 1, protocol::Charset::latin1);
@@ -48,7 +48,7 @@ void Host::begin_run(const std::optional<daemon::OpenIssue>& open) {
         settings, plan,
         VirtualStore{
             context_, random_.fork(generation),
-            daemon::StoreWork{*spool_, job_, daemon::LedgerKeeper{*spool_, job_, wanted_, "tcp://printer:3000", open}},
+            store::StoreWork{*spool_, job_, store::LedgerKeeper{*spool_, job_, wanted_, "tcp://printer:3000", open}},
             generation},
         generation);
     const bool reachable = !wire_.down();
@@ -162,18 +162,18 @@ void Host::store_wake(std::uint64_t generation) {
 }
 
 void Host::take_replies() {
-    for (daemon::StoreReply& reply : run_->store.take_replies()) {
+    for (store::StoreReply& reply : run_->store.take_replies()) {
         run_->replies.push_back(std::move(reply));
     }
     const std::uint64_t generation = run_->generation;
     while (is_current(generation) && !paused() && !run_->replies.empty()) {
-        const daemon::StoreReply reply = run_->replies.front();
+        const store::StoreReply reply = run_->replies.front();
         run_->replies.erase(run_->replies.begin());
         if (run_->finished) {
             continue;
         }
         call([&reply](Session& session, Instant now, Effects& effects) {
-            daemon::deliver(reply, session, now, effects);
+            store::deliver(reply, session, now, effects);
         });
         if (is_current(generation)) {
             push_cumulative();

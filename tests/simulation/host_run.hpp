@@ -28,7 +28,7 @@ struct Host::Run {
     // What waits for a paused process
     std::string inbox;
     bool peer_closed = false;
-    std::vector<daemon::StoreReply> replies;
+    std::vector<store::StoreReply> replies;
 };
 
 template <typename Fact>

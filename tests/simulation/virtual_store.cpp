@@ -8,14 +8,14 @@ using namespace std::chrono_literals;
 constexpr Duration checkpoint_interval = 5s;
 
 /// Whether the request needs the disk.
-bool is_durable(const daemon::StoreRequest& request) {
+bool is_durable(const store::StoreRequest& request) {
     return std::holds_alternative<feeder::Settle>(request) || std::holds_alternative<feeder::BeginRun>(request) ||
            std::holds_alternative<feeder::AdoptRun>(request) || std::holds_alternative<feeder::End>(request);
 }
 
 } // namespace
 
-VirtualStore::VirtualStore(Context& context, Random random, daemon::StoreWork work, std::uint64_t generation)
+VirtualStore::VirtualStore(Context& context, Random random, store::StoreWork work, std::uint64_t generation)
     : context_(context)
     , random_(random)
     , work_(std::move(work))
@@ -23,7 +23,7 @@ VirtualStore::VirtualStore(Context& context, Random random, daemon::StoreWork wo
     , last_commit_(context.now)
     , last_checkpoint_(context.now) {}
 
-void VirtualStore::push(daemon::StoreRequest request) {
+void VirtualStore::push(store::StoreRequest request) {
     requests_.push_back(std::move(request));
     go_on();
 }
@@ -87,7 +87,7 @@ void VirtualStore::begin(Operation operation) {
 void VirtualStore::execute() {
     switch (operation_) {
     case Operation::take: {
-        const daemon::StoreRequest request = std::move(requests_.front());
+        const store::StoreRequest request = std::move(requests_.front());
         requests_.pop_front();
         work_.take(request);
         return;

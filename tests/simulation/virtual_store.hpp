@@ -3,9 +3,9 @@
 #pragma once
 
 #include "context.hpp"
-#include "daemon/store_work.hpp"
 #include "ram_disk.hpp"
 #include "random.hpp"
+#include "store/store_work.hpp"
 
 #include <cstdint>
 #include <deque>
@@ -13,16 +13,16 @@
 
 namespace linefeed::simulation {
 
-/// Flow: push() requests; done() and wake() for its events; take_replies() after each. As daemon::Store::run().
+/// Flow: push() requests; done() and wake() for its events; take_replies() after each. As store::StoreThread::run().
 class VirtualStore {
 public:
-    VirtualStore(Context& context, Random random, daemon::StoreWork work, std::uint64_t generation);
+    VirtualStore(Context& context, Random random, store::StoreWork work, std::uint64_t generation);
 
-    void push(daemon::StoreRequest request);
+    void push(store::StoreRequest request);
     [[nodiscard]] std::size_t waiting() const { return requests_.size(); }
     void done();
     void wake();
-    [[nodiscard]] std::vector<daemon::StoreReply> take_replies() { return work_.take_replies(); }
+    [[nodiscard]] std::vector<store::StoreReply> take_replies() { return work_.take_replies(); }
     /// The End request is carried out.
     [[nodiscard]] bool ended() const { return work_.ended() && !busy_; }
     /// What went wrong with the storage; empty = nothing.
@@ -41,9 +41,9 @@ private:
 
     Context& context_;
     Random random_;
-    daemon::StoreWork work_;
+    store::StoreWork work_;
     std::uint64_t generation_;
-    std::deque<daemon::StoreRequest> requests_;
+    std::deque<store::StoreRequest> requests_;
     Operation operation_ = Operation::commit;
     bool busy_ = false;
     bool executed_ = false; ///< the operation has reached the disk at its beginning, not at its end

@@ -9,8 +9,8 @@
 
 namespace linefeed::test {
 
-using daemon::StoreReply;
-using daemon::StoreWork;
+using store::StoreReply;
+using store::StoreWork;
 
 ShortRun::ShortRun(std::filesystem::path directory, spool::SpoolOptions options)
     : directory_(std::move(directory))
@@ -74,7 +74,7 @@ Result<spool::Job> ShortRun::job_of(spool::Spool& spool) {
 }
 
 void ShortRun::print(spool::Spool& spool, const spool::Job& job) {
-    auto open = daemon::find_open_issue(spool, job.id);
+    auto open = store::find_open_issue(spool, job.id);
     if (!open) {
         failure_ = open.error();
         return;
@@ -82,9 +82,9 @@ void ShortRun::print(spool::Spool& spool, const spool::Job& job) {
     granted_ = {};
     durable_through_ = reported_through_ = {};
     pages_.clear();
-    const std::optional<daemon::OpenIssue> earlier = *open;
+    const std::optional<store::OpenIssue> earlier = *open;
     StoreWork work{spool, job.id,
-                   daemon::LedgerKeeper{spool, job.id, job.records, "tcp://10.0.0.5:3000", std::move(*open)}};
+                   store::LedgerKeeper{spool, job.id, job.records, "tcp://10.0.0.5:3000", std::move(*open)}};
     if (earlier) {
         settle_earlier(work, *earlier);
     }
@@ -103,7 +103,7 @@ void ShortRun::print(spool::Spool& spool, const spool::Job& job) {
     }
 }
 
-void ShortRun::settle_earlier(StoreWork& work, const daemon::OpenIssue& open) {
+void ShortRun::settle_earlier(StoreWork& work, const store::OpenIssue& open) {
     feeder::Settle settle;
     settle.earlier_run = true;
     const RecordRange issued = open.records;
@@ -182,22 +182,22 @@ void ShortRun::pump(StoreWork& work) {
 }
 
 void ShortRun::take(StoreWork& /*work*/, const StoreReply& reply) {
-    if (const auto* granted = std::get_if<daemon::Granted>(&reply)) {
+    if (const auto* granted = std::get_if<store::Granted>(&reply)) {
         granted_ = granted->range;
         durable_through_ = granted->durable_through;
         reported_through_ = granted_.first().previous();
-    } else if (const auto* durable = std::get_if<daemon::Durable>(&reply)) {
+    } else if (const auto* durable = std::get_if<store::Durable>(&reply)) {
         durable_through_ = durable->through;
-    } else if (std::holds_alternative<daemon::Settled>(reply)) {
+    } else if (std::holds_alternative<store::Settled>(reply)) {
         claims_.settled = true;
         claims_.printed_through = std::max(claims_.printed_through, tape_);
-    } else if (const auto* page = std::get_if<daemon::PageReady>(&reply)) {
+    } else if (const auto* page = std::get_if<store::PageReady>(&reply)) {
         pages_.push_back(page->page);
-    } else if (const auto* refused = std::get_if<daemon::Refused>(&reply)) {
+    } else if (const auto* refused = std::get_if<store::Refused>(&reply)) {
         if (refused->why == feeder::OutcomeCode::nothing_to_print) { // because all is printed
             claims_.printed_through = RecordNumber{records};
         }
-    } else if (std::holds_alternative<daemon::StorageFailed>(reply)) {
+    } else if (std::holds_alternative<store::StorageFailed>(reply)) {
         ++storage_failed_;
     }
     claims_.intents_through = std::max(claims_.intents_through, durable_through_);
@@ -205,7 +205,7 @@ void ShortRun::take(StoreWork& /*work*/, const StoreReply& reply) {
 
 void ShortRun::give_back_pages(StoreWork& work) {
     while (!pages_.empty() && pages_.front()->range().last() <= tape_) {
-        work.take(daemon::PageReturned{pages_.front()});
+        work.take(store::PageReturned{pages_.front()});
         pages_.erase(pages_.begin());
     }
 }

@@ -3,8 +3,8 @@
 // what was claimed durable until then is known, and the next run must continue behind the tape.
 #pragma once
 
-#include "daemon/store_work.hpp"
 #include "spool/spool.hpp"
+#include "store/store_work.hpp"
 
 #include <cstdint>
 #include <filesystem>
@@ -51,12 +51,12 @@ public:
 private:
     [[nodiscard]] Result<spool::Job> job_of(spool::Spool& spool);
     void print(spool::Spool& spool, const spool::Job& job);
-    void settle_earlier(daemon::StoreWork& work, const daemon::OpenIssue& open);
-    void print_granted(daemon::StoreWork& work);
+    void settle_earlier(store::StoreWork& work, const store::OpenIssue& open);
+    void print_granted(store::StoreWork& work);
     void move_products(std::uint32_t most);
-    void pump(daemon::StoreWork& work);
-    void take(daemon::StoreWork& work, const daemon::StoreReply& reply);
-    void give_back_pages(daemon::StoreWork& work);
+    void pump(store::StoreWork& work);
+    void take(store::StoreWork& work, const store::StoreReply& reply);
+    void give_back_pages(store::StoreWork& work);
 
     std::filesystem::path directory_;
     spool::SpoolOptions options_;

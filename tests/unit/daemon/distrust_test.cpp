@@ -1,7 +1,7 @@
 // A spool from a backup: nothing of it is printed again before an operator has said what is printed.
 #include "daemon/distrust.hpp"
-#include "daemon/ledger_keeper.hpp"
-#include "spool_job.hpp"
+#include "store/ledger_keeper.hpp"
+#include "support/spool_job.hpp"
 
 namespace linefeed::daemon {
 namespace {
@@ -9,6 +9,8 @@ namespace {
 using spool::LedgerEntry;
 using spool::LedgerKind;
 using spool::RecordState;
+using test::closed;
+using test::SpoolJobTest;
 
 class DistrustTest : public SpoolJobTest {
 protected:
@@ -39,7 +41,7 @@ TEST_F(DistrustTest, shouldPutOpenRecordsAndWhatFollowsInDoubtAsOneStretch) {
     ASSERT_EQ(state().segments().size(), 2U); // one product tells about a single stretch of one run
     EXPECT_EQ(state().segments().back().range, closed(101, records_of_job));
     EXPECT_EQ(state().segments().back().state, RecordState::in_doubt);
-    EXPECT_FALSE(find_open_issue(*spool_, job_).value()); // no printer is asked about them
+    EXPECT_FALSE(store::find_open_issue(*spool_, job_).value()); // no printer is asked about them
     EXPECT_TRUE(next().empty());
 }
 

@@ -22,7 +22,7 @@ std::size_t bound(const HistogramView& histogram, double seconds) {
 }
 
 TEST(LineMeters, shouldShowFourBoundsOfEachDecade) {
-    const HistogramView histogram = view(SharedHistogram{});
+    const HistogramView histogram = view(store::SharedHistogram{});
     EXPECT_EQ(histogram.bounds_s.size(), 33U);
     EXPECT_EQ(histogram.counts.size(), 34U);
     EXPECT_DOUBLE_EQ(histogram.bounds_s.front(), 1e-6);
@@ -32,7 +32,7 @@ TEST(LineMeters, shouldShowFourBoundsOfEachDecade) {
 }
 
 TEST(LineMeters, shouldLoseNoneBetweenTheBounds) {
-    SharedHistogram histogram;
+    store::SharedHistogram histogram;
     for (const Duration border : histogram_borders) {
         histogram.record(border);
     }
@@ -45,7 +45,7 @@ TEST(LineMeters, shouldLoseNoneBetweenTheBounds) {
 }
 
 TEST(LineMeters, shouldShowTheSum) {
-    SharedHistogram histogram;
+    store::SharedHistogram histogram;
     histogram.record(microseconds{1500}, 2);
     EXPECT_DOUBLE_EQ(view(histogram).sum_s, 0.003);
 }

@@ -1,7 +1,7 @@
 // An import that goes on while its records are printed: what is there when, how it ends, and who is woken.
 #include "daemon/running_import.hpp"
 #include "rows_double.hpp"
-#include "spool_job.hpp"
+#include "support/spool_job.hpp"
 
 #include <gmock/gmock.h>
 #include <sqlite3.h>
@@ -14,6 +14,8 @@ namespace linefeed::daemon {
 namespace {
 
 using spool::ImportState;
+using test::closed;
+using test::SpoolJobTest;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
@@ -190,7 +192,7 @@ TEST_F(RunningImportTest, shouldNotHoldMoreThanALittleInMemory) {
 
 TEST_F(RunningImportTest, shouldWakeWhoeverServesTheSpool) {
     begin();
-    EventSignal server;
+    store::EventSignal server;
     import_->wake(&server);
     rows_.give(512);
     server.wait(20'000);

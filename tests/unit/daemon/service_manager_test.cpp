@@ -1,8 +1,8 @@
 // What systemd hears, on a socket that stands for its own, and when the watchdog starves.
 #include "daemon/feed_thread.hpp"
 #include "daemon/service_manager.hpp"
-#include "daemon/store_thread.hpp"
-#include "spool_job.hpp"
+#include "store/store_thread.hpp"
+#include "support/spool_job.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -22,6 +22,7 @@ namespace {
 
 using std::chrono::milliseconds;
 using std::chrono::seconds;
+using test::SpoolJobTest;
 using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::MatchesRegex;
@@ -145,7 +146,7 @@ TEST_F(WatchdogThreadsTest, shouldStarveWhileTheFeedThreadStandsStill) {
     StallingGuest guest;
     FeedThread feed{{}};
     static_cast<void>(feed.start());
-    StoreThread store{*spool_};
+    store::StoreThread store{*spool_};
     Watchdog watchdog{{{"feed thread", [&] { return feed.beats(); }}, {"store thread", [&] { return store.beats(); }}}};
     EXPECT_EQ(looked(watchdog, seconds{20}), "WATCHDOG=1");
     EXPECT_EQ(looked(watchdog, seconds{20}), "WATCHDOG=1");
@@ -161,7 +162,7 @@ TEST_F(WatchdogThreadsTest, shouldStarveWhileTheFeedThreadStandsStill) {
 }
 
 TEST_F(WatchdogThreadsTest, shouldStarveWhileTheStoreThreadStandsStill) {
-    StoreThread store{*spool_};
+    store::StoreThread store{*spool_};
     Watchdog watchdog{{{"store thread", [&] { return store.beats(); }}}};
     EXPECT_EQ(looked(watchdog, seconds{20}), "WATCHDOG=1");
     std::promise<void> stalled;

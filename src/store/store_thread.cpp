@@ -1,4 +1,4 @@
-#include "daemon/store_thread.hpp"
+#include "store/store_thread.hpp"
 
 #include <algorithm>
 #include <future>
@@ -6,7 +6,7 @@
 #include <new>
 #include <utility>
 
-namespace linefeed::daemon {
+namespace linefeed::store {
 
 namespace {
 constexpr int idle_wait_ms = 1000;
@@ -204,4 +204,4 @@ void StoreThread::run() {
     }
 }
 
-} // namespace linefeed::daemon
+} // namespace linefeed::store

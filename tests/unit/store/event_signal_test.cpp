@@ -1,4 +1,4 @@
-#include "daemon/event_signal.hpp"
+#include "store/event_signal.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <poll.h>
 #include <thread>
 
-namespace linefeed::daemon {
+namespace linefeed::store {
 namespace {
 
 using std::chrono::steady_clock;
@@ -67,4 +67,4 @@ TEST(EventSignal, shouldWakeAnotherThread) {
 }
 
 } // namespace
-} // namespace linefeed::daemon
+} // namespace linefeed::store

@@ -1,8 +1,8 @@
-#include "daemon/store_work.hpp"
+#include "store/store_work.hpp"
 
 #include <utility>
 
-namespace linefeed::daemon {
+namespace linefeed::store {
 
 namespace {
 
@@ -257,4 +257,4 @@ bool StoreWork::fail_out_of_memory() noexcept {
     return true;
 }
 
-} // namespace linefeed::daemon
+} // namespace linefeed::store

@@ -1,17 +1,19 @@
 // The store over one run while every statement and every read of its spool fails in turn: the failure is told once, and
 // what was acknowledged is in the ledger.
-#include "daemon/store_work.hpp"
-#include "spool_job.hpp"
+#include "store/store_work.hpp"
 #include "support/crash_vfs.hpp"
+#include "support/spool_job.hpp"
 #include "support/sql_faults.hpp"
 
 #include <functional>
 
-namespace linefeed::daemon {
+namespace linefeed::store {
 namespace {
 
 using spool::RecordState;
+using test::closed;
 using test::DiskCall;
+using test::SpoolJobTest;
 
 class StoreWorkFaults : public SpoolJobTest {
 protected:
@@ -197,4 +199,4 @@ TEST_F(StoreWorkFaults, shouldTellThatTheLedgerCannotBeReadAtTheEnd) {
 }
 
 } // namespace
-} // namespace linefeed::daemon
+} // namespace linefeed::store

@@ -1,9 +1,9 @@
 // The evidence that stands in the ledger, byte for byte: a later linefeed has to read it.
-#include "daemon/evidence_json.hpp"
+#include "store/evidence_json.hpp"
 
 #include <gtest/gtest.h>
 
-namespace linefeed::daemon {
+namespace linefeed::store {
 namespace {
 
 feeder::BeginRun begin_with_everything() {
@@ -109,4 +109,4 @@ TEST(EvidenceJson, shouldReadBackThatNobodyKnewTheRecords) {
 }
 
 } // namespace
-} // namespace linefeed::daemon
+} // namespace linefeed::store

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace linefeed::daemon {
+namespace linefeed::store {
 
 /// Records issued by an earlier run whose fate is not known, and who issued them.
 struct OpenIssue {
@@ -99,4 +99,4 @@ private:
     protocol::MailStatus pending_evidence_;
 };
 
-} // namespace linefeed::daemon
+} // namespace linefeed::store

@@ -1,22 +1,20 @@
 // The store of a run whose job is still being imported: what may be granted, lent and intended when, and what is told
 // of the end.
-#include "daemon/running_import.hpp"
-#include "daemon/store_thread.hpp"
-#include "rows_double.hpp"
-#include "spool_job.hpp"
+#include "store/store.hpp"
+#include "support/spool_job.hpp"
 
 #include <gmock/gmock.h>
 #include <sqlite3.h>
 
-#include <chrono>
 #include <functional>
 #include <string>
 #include <utility>
 
-namespace linefeed::daemon {
+namespace linefeed::store {
 namespace {
 
-using spool::LedgerKind;
+using test::closed;
+using test::SpoolJobTest;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
@@ -45,7 +43,8 @@ public:
     [[nodiscard]] RecordRange durable() const override { return import_.durable(); }
     [[nodiscard]] bool end_known() const override { return ended_; }
     [[nodiscard]] const std::optional<Failure>& failure() const override { return failure_; }
-    void wake(EventSignal* /*waiting*/) override {}
+    void wake(EventSignal* waiting) override { waiting_ = waiting; }
+    [[nodiscard]] const EventSignal* waiting() const { return waiting_; }
 
     std::function<void()> next_; ///< the next step
 
@@ -53,6 +52,7 @@ private:
     spool::JobImport import_;
     bool ended_ = false;
     std::optional<Failure> failure_;
+    EventSignal* waiting_ = nullptr;
 };
 
 class SupplyTest : public SpoolJobTest {
@@ -232,85 +232,15 @@ TEST_F(SupplyTest, shouldFailWhenTheImportCannotBeWritten) {
     EXPECT_FALSE(store.wants_supply_step());
 }
 
-/// Two runs on one store thread: one of a job that is there, one of a job that is still being imported.
-class SupplyOnAThread : public SpoolJobTest {
-protected:
-    template <typename Reply>
-    static std::optional<Reply> wait_for(Store& store) {
-        const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds{20};
-        while (std::chrono::steady_clock::now() < deadline) {
-            StoreReply reply;
-            while (store.pop(reply)) {
-                if (const auto* wanted = std::get_if<Reply>(&reply)) {
-                    return *wanted;
-                }
-            }
-            store.replies_signal().wait(20);
-        }
-        return std::nullopt;
-    }
-    LedgerKeeper keeper(spool::JobId job) {
-        return LedgerKeeper{*spool_, job, closed(1, 2000), "tcp://10.0.0.5:3000", std::nullopt};
-    }
-    static void end(Store& store) {
-        feeder::End end;
-        end.outcome.issued = true; // nobody knows what the printer holds
-        EXPECT_TRUE(store.push(end));
-        store.join();
-    }
-};
-
-TEST_F(SupplyOnAThread, shouldImportForOneRunWhileItServesAnother) {
-    RowsDouble rows;
-    RunningImport import{spool_->begin_import({}).value(), rows.source(), {}, {}};
-    import.start();
-    rows.give(512);
-    while (import.durable().empty()) { // before the run
-        import.wants_step() ? import.step() : import.wait(20);
-    }
-    StoreThread thread{*spool_};
-    Store other{StoreWork{*spool_, job_, keeper(job_)}};
-    Store store{StoreWork{*spool_, import.job(), keeper(import.job()), &import}};
-    thread.add(other);
-    thread.add(store);
-    ASSERT_TRUE(other.push(feeder::BeginRun{}) && store.push(feeder::BeginRun{}));
-    EXPECT_EQ(wait_for<Granted>(store)->durable_through, RecordNumber{512});
-    EXPECT_TRUE(wait_for<PageReady>(other));
-    ASSERT_TRUE(store.push(feeder::AskIntent{RecordNumber{700}}));
-    rows.give(512); // wakes the thread
-    EXPECT_EQ(wait_for<Durable>(store)->through, RecordNumber{700});
-    ASSERT_TRUE(other.push(feeder::AskIntent{RecordNumber{700}}));
-    EXPECT_TRUE(wait_for<Durable>(other));
-    rows.end();
-    EXPECT_EQ(wait_for<EndKnown>(store)->last, RecordNumber{1024});
-    end(store);
-    end(other);
-    EXPECT_TRUE(import.over());
-    EXPECT_EQ(spool_->job(import.job()).value()->state, spool::ImportState::ready);
-    EXPECT_TRUE(spool_->verify_ledger());
-}
-
-TEST_F(SupplyOnAThread, shouldGiveTheImportBackWhenTheRunEnds) {
-    RowsDouble rows;
-    RunningImport import{spool_->begin_import({}).value(), rows.source(), {}, {}};
-    import.start();
-    rows.give(512);
-    while (import.durable().empty()) {
-        import.wants_step() ? import.step() : import.wait(20);
-    }
-    {
-        StoreThread thread{*spool_};
-        Store store{StoreWork{*spool_, import.job(), keeper(import.job()), &import}};
-        thread.add(store);
-        end(store);
-    } // nobody may be woken there any more
-    rows.give(512);
-    rows.end();
-    while (!import.over()) {
-        import.wants_step() ? import.step() : import.wait(20);
-    }
-    EXPECT_EQ(spool_->job(import.job()).value()->records, closed(1, 1024));
+TEST_F(SupplyTest, shouldWakeWhoeverServesTheRunUntilItEnds) {
+    supply_->add(300);
+    EventSignal requests;
+    Store store{work()};
+    store.begin(requests);
+    EXPECT_EQ(supply_->waiting(), &requests);
+    store.end();
+    EXPECT_EQ(supply_->waiting(), nullptr);
 }
 
 } // namespace
-} // namespace linefeed::daemon
+} // namespace linefeed::store

@@ -1,14 +1,16 @@
 // The store thread: requests and replies through the rings, and what becomes of it when memory runs out.
-#include "daemon/store_thread.hpp"
-#include "spool_job.hpp"
+#include "store/store_thread.hpp"
+#include "support/spool_job.hpp"
 
 #include <chrono>
 #include <poll.h>
 
-namespace linefeed::daemon {
+namespace linefeed::store {
 namespace {
 
 using spool::RecordState;
+using test::closed;
+using test::SpoolJobTest;
 
 class StoreTest : public SpoolJobTest {
 protected:
@@ -129,4 +131,4 @@ TEST_F(StoreTest, shouldEndWhenMemoryRunsOutAtTheEnd) {
 }
 
 } // namespace
-} // namespace linefeed::daemon
+} // namespace linefeed::store

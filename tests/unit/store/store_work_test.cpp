@@ -1,15 +1,17 @@
 // What the store does for a run, request by request.
 #include "../session/conversation.hpp"
-#include "daemon/store_work.hpp"
-#include "spool_job.hpp"
+#include "store/store_work.hpp"
+#include "support/spool_job.hpp"
 
 #include <gmock/gmock.h>
 
-namespace linefeed::daemon {
+namespace linefeed::store {
 namespace {
 
 using spool::LedgerKind;
 using spool::RecordState;
+using test::closed;
+using test::SpoolJobTest;
 using testing::IsEmpty;
 
 class StoreWorkTest : public SpoolJobTest {
@@ -304,4 +306,4 @@ TEST_F(Delivery, shouldBringAVerdictThatIsDurable) {
 }
 
 } // namespace
-} // namespace linefeed::daemon
+} // namespace linefeed::store

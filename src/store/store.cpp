@@ -1,8 +1,8 @@
-#include "daemon/store.hpp"
+#include "store/store.hpp"
 
 #include <utility>
 
-namespace linefeed::daemon {
+namespace linefeed::store {
 
 Store::Store(StoreWork work)
     : work_(std::move(work)) {}
@@ -71,4 +71,4 @@ void Store::send_replies() {
     }
 }
 
-} // namespace linefeed::daemon
+} // namespace linefeed::store

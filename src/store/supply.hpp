@@ -4,11 +4,11 @@
 
 #include "base/failure.hpp"
 #include "base/record_number.hpp"
-#include "daemon/event_signal.hpp"
+#include "store/event_signal.hpp"
 
 #include <optional>
 
-namespace linefeed::daemon {
+namespace linefeed::store {
 
 /// All on the thread that owns the spool, unless said otherwise.
 class Supply {
@@ -32,4 +32,4 @@ public:
     virtual void wake(EventSignal* waiting) = 0;
 };
 
-} // namespace linefeed::daemon
+} // namespace linefeed::store

@@ -3,11 +3,11 @@
 #pragma once
 
 #include "base/record_page.hpp"
-#include "daemon/ledger_keeper.hpp"
-#include "daemon/supply.hpp"
 #include "feeder/actions.hpp"
 #include "session/session.hpp"
 #include "spool/spool.hpp"
+#include "store/ledger_keeper.hpp"
+#include "store/supply.hpp"
 
 #include <deque>
 #include <memory>
@@ -15,7 +15,7 @@
 #include <variant>
 #include <vector>
 
-namespace linefeed::daemon {
+namespace linefeed::store {
 
 /// Feed thread → store: the feeder's ledger actions, and pages that are not needed any more.
 struct PageReturned {
@@ -111,4 +111,4 @@ private:
     std::string failure_;
 };
 
-} // namespace linefeed::daemon
+} // namespace linefeed::store

@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-namespace linefeed::daemon {
+namespace linefeed::store {
 
 /// What a run_started row remembers of the printer: enough to reconcile after a crash.
 struct RunStart {
@@ -38,4 +38,4 @@ struct RunEnd {
 /// std::nullopt if the text is no JSON.
 [[nodiscard]] std::optional<RunEnd> parse_run_end(const std::string& json);
 
-} // namespace linefeed::daemon
+} // namespace linefeed::store

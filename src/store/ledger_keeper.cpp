@@ -1,10 +1,10 @@
-#include "daemon/ledger_keeper.hpp"
+#include "store/ledger_keeper.hpp"
 
-#include "daemon/evidence_json.hpp"
+#include "store/evidence_json.hpp"
 
 #include <algorithm>
 
-namespace linefeed::daemon {
+namespace linefeed::store {
 
 using spool::LedgerEntry;
 using spool::LedgerKind;
@@ -280,4 +280,4 @@ Result<void> LedgerKeeper::finish(const feeder::Outcome& outcome) {
     return spool_.append(job_, entries);
 }
 
-} // namespace linefeed::daemon
+} // namespace linefeed::store

@@ -1,4 +1,4 @@
-#include "daemon/evidence_json.hpp"
+#include "store/evidence_json.hpp"
 
 #include "spool/json_text.hpp"
 
@@ -6,7 +6,7 @@
 
 #include <utility>
 
-namespace linefeed::daemon {
+namespace linefeed::store {
 
 using spool::JsonObject;
 
@@ -184,4 +184,4 @@ std::optional<RunEnd> parse_run_end(const std::string& text) {
     return Json::sax_parse(text, &reader) ? std::optional{reader.end()} : std::nullopt;
 }
 
-} // namespace linefeed::daemon
+} // namespace linefeed::store

@@ -1,4 +1,4 @@
-#include "daemon/event_signal.hpp"
+#include "store/event_signal.hpp"
 
 #include "base/assert.hpp"
 
@@ -7,7 +7,7 @@
 #include <sys/eventfd.h>
 #include <unistd.h>
 
-namespace linefeed::daemon {
+namespace linefeed::store {
 
 EventSignal::EventSignal()
     : descriptor_(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {
@@ -35,4 +35,4 @@ void EventSignal::wait(int timeout_ms) noexcept {
     clear();
 }
 
-} // namespace linefeed::daemon
+} // namespace linefeed::store

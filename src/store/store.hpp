@@ -2,8 +2,8 @@
 // replies travel in single-producer single-consumer rings between the feed thread and the store thread.
 #pragma once
 
-#include "daemon/event_signal.hpp"
-#include "daemon/store_work.hpp"
+#include "store/event_signal.hpp"
+#include "store/store_work.hpp"
 
 #include <boost/lockfree/spsc_queue.hpp>
 
@@ -11,7 +11,7 @@
 #include <new>
 #include <string>
 
-namespace linefeed::daemon {
+namespace linefeed::store {
 
 /// Flow: construct, StoreThread::add(); requests and replies; the End request is the last, after it join().
 class Store {
@@ -68,4 +68,4 @@ private:
     std::atomic<bool> serving_{false};
 };
 
-} // namespace linefeed::daemon
+} // namespace linefeed::store

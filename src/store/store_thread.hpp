@@ -2,10 +2,10 @@
 // want written is gathered into one transaction, so that many printers cost hardly more syncs than one.
 #pragma once
 
-#include "daemon/event_signal.hpp"
-#include "daemon/line_meters.hpp"
-#include "daemon/store.hpp"
 #include "spool/spool.hpp"
+#include "store/event_signal.hpp"
+#include "store/shared_count.hpp"
+#include "store/store.hpp"
 
 #include <chrono>
 #include <deque>
@@ -14,7 +14,7 @@
 #include <thread>
 #include <vector>
 
-namespace linefeed::daemon {
+namespace linefeed::store {
 
 /// Flow: add() a Store for each run; the last reference to a Store goes with its End request. While any run is under
 /// way, others use the spool through call() only. All runs must have ended before it is destroyed.
@@ -72,4 +72,4 @@ private:
     std::thread thread_;
 };
 
-} // namespace linefeed::daemon
+} // namespace linefeed::store

@@ -2,9 +2,9 @@
 // from the push of each confirmation to the sync of its row, on a disk in memory: what is left is the thread's own
 // waiting, and the noise of the machine. Noise only adds and hits at random, so the middle of many confirmations that
 // came equally long after a commit is judged; the worst is printed.
-#include "daemon/store_thread.hpp"
-#include "spool_job.hpp"
+#include "store/store_thread.hpp"
 #include "support/crash_vfs.hpp"
+#include "support/spool_job.hpp"
 
 #include <algorithm>
 #include <array>
@@ -13,10 +13,12 @@
 #include <memory>
 #include <thread>
 
-namespace linefeed::daemon {
+namespace linefeed::store {
 namespace {
 
 using namespace std::chrono_literals;
+using test::closed;
+using test::SpoolJobTest;
 
 std::int64_t steady_ns() {
     return std::chrono::steady_clock::now().time_since_epoch() / 1ns;
@@ -141,4 +143,4 @@ TEST_F(ConfirmationDelay, shouldBeFiftyMillisecondsAtMost) {
 }
 
 } // namespace
-} // namespace linefeed::daemon
+} // namespace linefeed::store

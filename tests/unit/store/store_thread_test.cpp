@@ -1,16 +1,18 @@
 // Several runs on one store thread: what they want written goes into one transaction, and the mistake of one is not the
 // others'.
-#include "daemon/store_thread.hpp"
-#include "spool_job.hpp"
+#include "store/store_thread.hpp"
+#include "support/spool_job.hpp"
 
 #include <chrono>
 #include <memory>
 
-namespace linefeed::daemon {
+namespace linefeed::store {
 namespace {
 
 using spool::LedgerKind;
 using spool::RecordState;
+using test::closed;
+using test::SpoolJobTest;
 
 class StoreThreadTest : public SpoolJobTest {
 protected:
@@ -131,4 +133,4 @@ TEST_F(StoreThreadTest, shouldHandBackWhatACallThrows) {
 }
 
 } // namespace
-} // namespace linefeed::daemon
+} // namespace linefeed::store

@@ -1,15 +1,17 @@
 // What the feeder says, as rows of a real spool: which records are granted, and that issued = printed + in doubt +
 // unused + open.
-#include "daemon/ledger_keeper.hpp"
-#include "spool_job.hpp"
+#include "store/ledger_keeper.hpp"
+#include "support/spool_job.hpp"
 
 #include <gmock/gmock.h>
 
-namespace linefeed::daemon {
+namespace linefeed::store {
 namespace {
 
 using spool::LedgerKind;
 using spool::RecordState;
+using test::closed;
+using test::SpoolJobTest;
 
 feeder::Settle verdict(RecordRange printed, RecordRange in_doubt, RecordRange unused) {
     feeder::Settle settle;
@@ -377,4 +379,4 @@ TEST_F(LedgerKeeperTest, shouldLeaveOpenWhatMayBeInThePrinter) {
 }
 
 } // namespace
-} // namespace linefeed::daemon
+} // namespace linefeed::store

@@ -1,7 +1,7 @@
 // Wakes a thread that waits on a file descriptor: no lock, no allocation, usable from the feed thread.
 #pragma once
 
-namespace linefeed::daemon {
+namespace linefeed::store {
 
 /// An eventfd. notify() from any thread; one thread waits.
 class EventSignal {
@@ -22,4 +22,4 @@ private:
     int descriptor_ = -1;
 };
 
-} // namespace linefeed::daemon
+} // namespace linefeed::store

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-namespace linefeed::daemon {
+namespace linefeed::test {
 
 inline RecordRange closed(std::uint32_t first, std::uint32_t last) {
     return RecordRange::closed(RecordNumber{first}, RecordNumber{last});
@@ -29,7 +29,7 @@ protected:
         // In memory where possible: syncs of a real disk would only take time.
         const std::filesystem::path memory = "/dev/shm";
         const auto base = std::filesystem::is_directory(memory) ? memory : std::filesystem::temp_directory_path();
-        std::string name = base / "linefeed-daemon-XXXXXX";
+        std::string name = base / "linefeed-job-XXXXXX";
         ASSERT_NE(::mkdtemp(name.data()), nullptr);
         directory_ = name;
         open_spool({});
@@ -83,4 +83,4 @@ protected:
     spool::JobId job_{};
 };
 
-} // namespace linefeed::daemon
+} // namespace linefeed::test
