@@ -49,11 +49,6 @@ void check_printer(const PrinterSettings& printer, Context& context) {
     if (printer.watch_interval != Duration{0} && printer.watch_interval < shortest_watch_interval) {
         context.refuse(key + ".watch_interval", "must be 0 s (never), or 1 s at least");
     }
-    if (printer.queue.chain == Chain::seamless) {
-        context.refuse(key + ".queue.chain",
-                       "\"seamless\" is not possible in this version: the numbers of two jobs in one FIFO do not tell "
-                       "after an interruption which of both has been printed; use \"stop\"");
-    }
 }
 
 void check_layout(const LayoutSettings& layout, Context& context) {

@@ -26,7 +26,7 @@ namespace linefeed::config {
 /// What happens between two jobs of a queue.
 enum class Chain {
     stop,     ///< the line stops at the end of each job
-    seamless, ///< the next job follows without a stop, with a number-0 start
+    seamless, ///< the next job follows in the same FIFO, with a number-0 start, where printer and job allow it
 };
 
 struct QueueSettings {

@@ -1,5 +1,6 @@
 #include "daemon/job_facts.hpp"
 
+#include <algorithm>
 #include <filesystem>
 
 namespace linefeed::daemon {
@@ -15,6 +16,11 @@ spool::Ticket JobFacts::ticket_or_new() const {
     fresh.name = std::filesystem::path{job.spec.source.path}.filename().string();
     fresh.created_by = "linefeed print";
     return fresh;
+}
+
+bool JobFacts::untouched() const {
+    return std::ranges::all_of(
+        ledger.segments(), [](const spool::LedgerSegment& segment) { return segment.state == RecordState::unused; });
 }
 
 std::string name_of(spool::JobId id) {
@@ -62,7 +68,8 @@ JobPhase phase_of(const JobFacts& facts, std::optional<JobPhase> live) {
             return JobPhase::finished;
         }
     }
-    if (facts.issued() || (facts.ticket && facts.ticket->begun)) {
+    const bool waits = facts.ticket && facts.ticket->place && facts.untouched();
+    if ((facts.issued() && !waits) || (facts.ticket && facts.ticket->begun)) {
         return JobPhase::stopped;
     }
     return facts.ticket && facts.ticket->place ? JobPhase::queued : JobPhase::ready;

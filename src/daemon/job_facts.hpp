@@ -21,6 +21,8 @@ struct JobFacts {
     [[nodiscard]] RecordRange next() const { return ledger.next_printable(job.records); }
     /// Something of it was granted to a run: it belongs to a printer.
     [[nodiscard]] bool issued() const { return !ledger.segments().empty(); }
+    /// Whatever was granted of it came back unused: nothing of it is on a product, in a printer or in doubt.
+    [[nodiscard]] bool untouched() const;
     /// Name of its printer; empty = none.
     [[nodiscard]] std::string printer() const { return ticket ? ticket->printer : std::string{}; }
     /// As it is before anything is written.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <unistd.h>
+#include <utility>
 
 namespace linefeed::daemon {
 
@@ -18,8 +19,10 @@ JobRun::JobRun(RunThreads threads, spool::Spool& spool, const spool::Job& job, R
     : threads_(threads)
     , settings_(settings)
     , store_(store::StoreWork{
-          spool, job.id, store::LedgerKeeper{spool, job.id, wanted, link::to_string(settings.printer), open}, supply})
-    , session_(settings.session, store::make_plan(open, job.id, wanted), settings.frames) {
+          spool, store::LedgerKeeper{spool, job.id, wanted, link::to_string(settings.printer), open}, supply})
+    , session_(settings.session, store::make_plan(open, job.id, wanted), settings.frames)
+    , at_work_(job.id)
+    , job_(job.id) {
     if (settings.meters != nullptr) {
         measure_.emplace(*settings.meters, open ? open->facts.printed_through : RecordNumber{});
     }
@@ -50,6 +53,11 @@ void JobRun::on_feed_thread() {
 
 void JobRun::request_stop() {
     stop_requested_.store(true, std::memory_order_release);
+    store_.replies_signal().notify();
+}
+
+void JobRun::offer_follower(const spool::Job& job) {
+    LINEFEED_ASSERT(offers_.push({job.id, job.records}));
     store_.replies_signal().notify();
 }
 
@@ -91,6 +99,7 @@ void JobRun::on_effect(const session::Effect& effect) {
         push_cumulative();
         push(*settle);
     } else if (const auto* begin = std::get_if<feeder::BeginRun>(&effect)) {
+        push_cumulative(); // a follower may begin when the ledger knows what is printed
         push(*begin);
     } else if (const auto* adopt = std::get_if<feeder::AdoptRun>(&effect)) {
         push(*adopt);
@@ -98,6 +107,9 @@ void JobRun::on_effect(const session::Effect& effect) {
         push(store::PageReturned{release->page});
     } else if (const auto* notice = std::get_if<feeder::Notice>(&effect)) {
         printing_ = printing_ || notice->code == feeder::NoticeCode::printing_started;
+        if (notice->code == feeder::NoticeCode::follower_printing) {
+            at_work_ = std::exchange(follower_, std::nullopt)->job;
+        }
         notices_.push(*notice); // if nobody reads them, later ones are lost, and nothing else
         news_.notify();
     } else if (const auto* last = std::get_if<feeder::End>(&effect)) {
@@ -134,6 +146,7 @@ void JobRun::end(const feeder::End& end) {
     push(end);
     // Before anybody looks at a run that is over: what the printer said last, such as that an error has gone.
     publish_printer(Instant{std::chrono::steady_clock::now().time_since_epoch()});
+    publish_places();
     finished_.store(true, std::memory_order_release);
     news_.notify();
     asio::post(threads_.feed.context(), [this] {
@@ -156,14 +169,31 @@ void JobRun::on_progress(Instant at) {
     if (measure_) {
         measure_->on_fact(session_, at);
     }
+    publish_places();
+}
+
+/// By the numbers of the job at work.
+void JobRun::publish_places() {
     const feeder::Feeder& feeder = session_.feeder();
-    const RecordRange& range = feeder.refill().range();
-    if (range.empty()) {
+    const RecordRange places = feeder.job_places();
+    if (places.empty()) {
         return;
     }
-    range_.store(std::uint64_t{range.first().value()} << 32 | range.last().value(), std::memory_order_relaxed);
-    printed_through_.store(feeder.refill().printed_through().value(), std::memory_order_relaxed);
-    sent_through_.store(feeder.refill().sent_through().value(), std::memory_order_relaxed);
+    const RecordNumber first = feeder.numbering().number_of(places.first());
+    const auto through = [&](RecordNumber place) {
+        const RecordCount count = std::min(place, places.last()) - places.first().previous();
+        return (first.previous() + count).value();
+    };
+    const feeder::Refill& refill = feeder.refill();
+    const std::uint32_t version = places_version_.load(std::memory_order_relaxed);
+    places_version_.store(version + 1, std::memory_order_relaxed); // odd: being written
+    std::atomic_thread_fence(std::memory_order_release);
+    job_.store(at_work_, std::memory_order_relaxed);
+    range_.store(std::uint64_t{first.value()} << 32 | through(places.last()), std::memory_order_relaxed);
+    printed_through_.store(through(refill.printed_through()), std::memory_order_relaxed);
+    sent_through_.store(through(refill.sent_through()), std::memory_order_relaxed);
+    records_in_printer_.store(refill.level().value(), std::memory_order_relaxed);
+    places_version_.store(version + 2, std::memory_order_release);
     rate_per_s_.store(feeder.rate(), std::memory_order_relaxed);
 }
 
@@ -202,24 +232,36 @@ void JobRun::publish_printer(Instant at) {
 }
 
 RecordCount RunProgress::credit() const {
-    return RecordCount{fifo_depth} - std::min(RecordCount{fifo_depth}, level());
+    return RecordCount{fifo_depth} - std::min(RecordCount{fifo_depth}, records_in_printer);
 }
 
 std::optional<double> RunProgress::time_to_empty_s() const {
-    return rate_per_s > 0 ? std::optional{static_cast<double>(level().value()) / rate_per_s} : std::nullopt;
+    return rate_per_s > 0 ? std::optional{static_cast<double>(records_in_printer.value()) / rate_per_s} : std::nullopt;
+}
+
+/// All of one moment, since they are of one job: again if they are being written.
+void JobRun::read_places(RunProgress& progress) const {
+    while (true) {
+        const std::uint32_t version = places_version_.load(std::memory_order_acquire);
+        progress.job = job_.load(std::memory_order_relaxed);
+        const std::uint64_t range = range_.load(std::memory_order_relaxed);
+        progress.printed_through = RecordNumber{printed_through_.load(std::memory_order_relaxed)};
+        progress.sent_through = RecordNumber{sent_through_.load(std::memory_order_relaxed)};
+        progress.records_in_printer = RecordCount{records_in_printer_.load(std::memory_order_relaxed)};
+        std::atomic_thread_fence(std::memory_order_acquire);
+        if (version % 2 == 0 && places_version_.load(std::memory_order_relaxed) == version) {
+            progress.range = range == 0 ? RecordRange{}
+                                        : RecordRange::closed(RecordNumber{static_cast<std::uint32_t>(range >> 32)},
+                                                              RecordNumber{static_cast<std::uint32_t>(range)});
+            return;
+        }
+    }
 }
 
 RunProgress JobRun::progress() const {
     RunProgress progress;
     progress.printing = printing_;
-    if (const std::uint64_t range = range_.load(std::memory_order_relaxed); range != 0) {
-        progress.range = RecordRange::closed(RecordNumber{static_cast<std::uint32_t>(range >> 32)},
-                                             RecordNumber{static_cast<std::uint32_t>(range)});
-    }
-    progress.printed_through = RecordNumber{printed_through_.load(std::memory_order_relaxed)};
-    // Written behind it and so perhaps newer; never seen smaller.
-    progress.sent_through =
-        std::max(progress.printed_through, RecordNumber{sent_through_.load(std::memory_order_relaxed)});
+    read_places(progress);
     const std::uint64_t fifo = fifo_.load(std::memory_order_relaxed);
     progress.fifo_depth = static_cast<std::uint32_t>(fifo >> 32);
     progress.fifo_entries = static_cast<std::uint32_t>(fifo);
@@ -249,6 +291,7 @@ void JobRun::wait_for_replies() {
         }
         store_.replies_signal().clear();
         take_stop_request();
+        take_offer();
         take_replies();
         wait_for_replies();
     };
@@ -259,6 +302,14 @@ void JobRun::wait_for_replies() {
 void JobRun::take_stop_request() {
     if (stop_requested_.exchange(false, std::memory_order_acquire) && !finished()) {
         edge_->link.call([](Session& session, Instant at, Effects& effects) { session.request_stop(at, effects); });
+    }
+}
+
+void JobRun::take_offer() {
+    store::OfferFollower follower;
+    if (!finished() && offers_.pop(follower)) {
+        follower_ = follower;
+        push(follower);
     }
 }
 

@@ -36,17 +36,18 @@ struct JobRunSettings {
 /// A glance at the run, from any thread.
 struct RunProgress {
     bool printing = false;
+    spool::JobId job{}; ///< at work: the run's, or the last that has followed without a stop
+    // By the numbers of that job
     RecordRange range; ///< of this run; empty until granted
     RecordNumber printed_through;
     RecordNumber sent_through;
+    RecordCount records_in_printer; ///< at most, of any job
     double rate_per_s = 0;
     std::uint32_t fifo_depth = 0;                   ///< entries, as the printer reports it
     std::uint32_t fifo_entries = 0;                 ///< last reported
     std::optional<protocol::MachineStatus> machine; ///< as last reported in this run
     std::optional<Instant> heard_at;                ///< of the last frame; monotonic time of this machine
 
-    /// At most so many records are in the printer.
-    [[nodiscard]] RecordCount level() const { return sent_through - printed_through; }
     /// Records that may still be sent, if they are at hand.
     [[nodiscard]] RecordCount credit() const;
     /// Until the FIFO is empty if nothing follows, at the measured rate; absent while the line stands.
@@ -72,6 +73,9 @@ public:
     JobRun& operator=(const JobRun&) = delete;
 
     void start();
+    /// `job`, none of which is issued, may follow without a stop; any thread. It is on offer until the notice
+    /// follower_printing comes, which tells that it has, and that another may be offered; or until the run ends.
+    void offer_follower(const spool::Job& job);
     /// Stops the line and finds the truth; any thread.
     void request_stop();
     [[nodiscard]] bool finished() const { return finished_.load(std::memory_order_acquire); }
@@ -82,6 +86,7 @@ public:
     void join();
 
     // After join()
+    /// Of the job at work.
     [[nodiscard]] const feeder::Outcome& outcome() const { return outcome_; }
     /// Why there was no connection, or what is wrong with the storage; empty = nothing to add.
     [[nodiscard]] const std::string& detail() const { return detail_; }
@@ -95,6 +100,9 @@ private:
     void publish_printer(Instant at);
     void wait_for_replies();
     void take_stop_request();
+    void take_offer();
+    void publish_places();
+    void read_places(RunProgress& progress) const;
     void take_replies();
     void push(const store::StoreRequest& request);
     void push_cumulative();
@@ -119,15 +127,21 @@ private:
 
     std::optional<feeder::ConfirmPrinted> confirm_; ///< latest not yet handed to the store
     std::optional<feeder::AskIntent> intent_;
+    std::optional<store::OfferFollower> follower_; ///< on offer
+    spool::JobId at_work_;
     std::uint64_t frames_published_ = 0; ///< the last that the figures below include
 
     boost::lockfree::spsc_queue<feeder::Notice, boost::lockfree::capacity<64>> notices_;
     store::EventSignal news_;
     std::atomic<bool> stop_requested_{false}; ///< set by any thread, with the store's replies_signal()
+    boost::lockfree::spsc_queue<store::OfferFollower, boost::lockfree::capacity<2>> offers_; ///< with the same signal
     std::atomic<bool> printing_{false};
-    std::atomic<std::uint64_t> range_{0}; ///< first << 32 | last; 0 = none
+    std::atomic<std::uint32_t> places_version_{0}; ///< of what read_places() reads; odd while that is written
+    std::atomic<spool::JobId> job_;                ///< at work
+    std::atomic<std::uint64_t> range_{0};          ///< first << 32 | last; 0 = none
     std::atomic<std::uint32_t> printed_through_{0};
     std::atomic<std::uint32_t> sent_through_{0};
+    std::atomic<std::uint64_t> records_in_printer_{0};
     std::atomic<double> rate_per_s_{0};
     std::atomic<std::uint64_t> fifo_{0};       ///< depth << 32 | entries
     std::atomic<std::uint64_t> machine_{0};    ///< packed; 0 = not known

@@ -1,60 +1,78 @@
 #include "daemon/other_jobs.hpp"
 
+#include <utility>
+
 namespace linefeed::daemon {
 
 namespace {
 
-struct OtherJob {
-    spool::Job job;
-    store::OpenIssue open;
-};
-
 /// The jobs besides `job` with open records at that printer, oldest first.
-Result<std::vector<OtherJob>> others_at(spool::Spool& spool, spool::JobId job, const std::string& printer) {
+Result<std::vector<spool::JobId>> others_at(spool::Spool& spool, spool::JobId job, const std::string& printer) {
     const auto open_jobs = spool.jobs_with_open_records();
     if (!open_jobs) {
         return open_jobs.error();
     }
-    std::vector<OtherJob> others;
+    std::vector<spool::JobId> others;
     for (const spool::JobId id : *open_jobs) {
-        auto open = store::find_open_issue(spool, id);
-        auto other = spool.job(id);
-        if (!open || !other) {
-            return open ? other.error() : open.error();
+        const auto open = store::find_open_issue(spool, id);
+        if (!open) {
+            return open.error();
         }
-        if (id != job && *open && *other && (*open)->printer == printer) {
-            others.push_back({std::move(**other), std::move(**open)});
+        if (id != job && *open && (*open)->printer == printer) {
+            others.push_back(id);
         }
     }
     return others;
 }
 
-Result<std::vector<OtherJob>> find_others(RunThreads threads, spool::JobId job, const std::string& printer) {
-    Result<std::vector<OtherJob>> others{std::vector<OtherJob>{}};
-    threads.store.call([&](spool::Spool& spool) { others = others_at(spool, job, printer); });
-    return others;
+struct OpenJob {
+    spool::Job job;
+    store::OpenIssue open;
+};
+
+/// Absent: nothing of it is open any more.
+Result<std::optional<OpenJob>> open_job(spool::Spool& spool, spool::JobId id) {
+    auto open = store::find_open_issue(spool, id);
+    auto job = spool.job(id);
+    if (!open || !job) {
+        return open ? job.error() : open.error();
+    }
+    return *open && *job ? std::optional{OpenJob{std::move(**job), std::move(**open)}} : std::nullopt;
+}
+
+Result<std::optional<OpenJob>> find_open_job(RunThreads threads, spool::JobId id) {
+    Result<std::optional<OpenJob>> found{std::optional<OpenJob>{}};
+    threads.store.call([&](spool::Spool& spool) { found = open_job(spool, id); });
+    return found;
 }
 
 } // namespace
 
-Result<bool> has_other_jobs(RunThreads threads, spool::JobId job, const std::string& printer) {
-    const auto others = find_others(threads, job, printer);
-    return others ? Result<bool>{!others->empty()} : others.error();
+Result<std::vector<spool::JobId>> other_jobs(RunThreads threads, spool::JobId job, const std::string& printer) {
+    Result<std::vector<spool::JobId>> others{std::vector<spool::JobId>{}};
+    threads.store.call([&](spool::Spool& spool) { others = others_at(spool, job, printer); });
+    return others;
 }
 
 Result<std::optional<Hindrance>> settle_other_jobs(RunThreads threads, spool::Spool& spool, spool::JobId job,
                                                    const JobRunSettings& settings, const WatchRun& watch) {
-    const auto others = find_others(threads, job, link::to_string(settings.printer));
+    const auto others = other_jobs(threads, job, link::to_string(settings.printer));
     if (!others) {
         return others.error();
     }
-    for (const OtherJob& other : *others) {
-        JobRun run{threads, spool, other.job, {}, other.open, settings};
+    for (const spool::JobId id : *others) {
+        const auto other = find_open_job(threads, id);
+        if (!other) {
+            return other.error();
+        }
+        if (!*other) {
+            continue; // settled with the one before it
+        }
+        JobRun run{threads, spool, (*other)->job, {}, (*other)->open, settings};
         run.start();
-        watch(run, other.job.id);
+        watch(run, id);
         run.join();
-        Result<std::optional<store::OpenIssue>> left{std::optional<store::OpenIssue>{}};
-        threads.store.call([&](spool::Spool& owned) { left = store::find_open_issue(owned, other.job.id); });
+        const auto left = find_open_job(threads, id);
         if (!left) {
             return left.error();
         }

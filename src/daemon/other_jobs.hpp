@@ -20,11 +20,12 @@ struct Hindrance {
     std::string detail;
 };
 
-/// Whether there is anything to ask the printer at that address about jobs other than `job`.
-[[nodiscard]] Result<bool> has_other_jobs(RunThreads threads, spool::JobId job, const std::string& printer);
+/// The jobs other than `job` that the printer at that address has to be asked about, oldest first.
+[[nodiscard]] Result<std::vector<spool::JobId>> other_jobs(RunThreads threads, spool::JobId job,
+                                                           const std::string& printer);
 
-/// Asks the printer of `settings` how far it came with records of jobs other than `job`. Absent = all that it knows is
-/// in the ledger now.
+/// Asks the printer of `settings` how far it came with records of jobs other than `job`: once where one run has left
+/// those of two. Absent = all that it knows is in the ledger now.
 [[nodiscard]] Result<std::optional<Hindrance>> settle_other_jobs(RunThreads threads, spool::Spool& spool,
                                                                  spool::JobId job, const JobRunSettings& settings,
                                                                  const WatchRun& watch);

@@ -22,7 +22,8 @@ struct Printer {
         }
     }
     void operator()(const BeginRun& begin) const {
-        out << "begin run, last printed before " << begin.last_printed_before;
+        out << (begin.follower ? "begin the follower's run" : "begin run") << ", last printed before "
+            << begin.last_printed_before;
     }
     void operator()(const AdoptRun& adopt) const {
         out << "adopt run, printed through " << adopt.printed_through << ", sent through " << adopt.sent_through;
@@ -44,6 +45,8 @@ std::string describe(const Notice& notice) {
     switch (notice.code) {
     case NoticeCode::printing_started:
         return "printing";
+    case NoticeCode::follower_printing:
+        return "the next job follows without a stop";
     case NoticeCode::stop_point_ignored:
         return "the printer does not keep the stop point (=CM): a blank end marker follows the last record, "
                "and the product behind the last one may come out blank";

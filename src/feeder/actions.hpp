@@ -1,5 +1,5 @@
 // What the feeder wants done. Inquiries, commands and records go to the printer; the rest goes to the ledger and to
-// people.
+// people. Records are named by their places (numbering.hpp) unless said otherwise.
 #pragma once
 
 #include "base/bounded_list.hpp"
@@ -25,7 +25,7 @@ struct Command {
 };
 /// `=CM`.
 struct SetStopAt {
-    RecordNumber number;
+    RecordNumber number; ///< as it goes out
     friend bool operator==(const SetStopAt&, const SetStopAt&) = default;
 };
 /// `=MR` for each record, in one gather write.
@@ -35,7 +35,7 @@ struct SendRecords {
 };
 /// `=MR` with a blank field: keeps a printer that ignores `=CM` from running empty (field notes, "Firmware habits").
 struct SendEndMarker {
-    RecordNumber number;
+    RecordNumber number; ///< as it goes out
     friend bool operator==(const SendEndMarker&, const SendEndMarker&) = default;
 };
 /// To the ledger: the fate of the records of an earlier run, or of this run at its end. Answered by
@@ -50,10 +50,12 @@ struct Settle {
     RecordNumber confirmed_through{};
     friend bool operator==(const Settle&, const Settle&) = default;
 };
-/// To the ledger: grant records for a new run. Answered by Feeder::on_granted.
+/// To the ledger: grant records for a new run. Answered by Feeder::on_granted; for a follower, if it may begin, by
+/// Feeder::on_follower_begun.
 struct BeginRun {
     PrinterFacts printer;
     RecordNumber last_printed_before; ///< OpenRun::last_printed_before
+    bool follower = false; ///< of the job that waits behind this run's: as things stand when all of that is printed
     friend bool operator==(const BeginRun&, const BeginRun&) = default;
 };
 /// To the ledger: the earlier run is still printing and goes on. Answered by Feeder::on_granted.
@@ -77,6 +79,7 @@ struct ConfirmPrinted {
 /// To people; printing goes on.
 enum class NoticeCode {
     printing_started,   ///< the printer is in state printing
+    follower_printing,  ///< the first record of the next job is printed, behind all of the one before it
     stop_point_ignored, ///< `=CM` is not kept: an end marker will follow the last record, and the next product may come
                         ///< out blank
     error_acknowledged, ///< a mailing error of an earlier run was acknowledged

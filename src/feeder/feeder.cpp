@@ -17,6 +17,7 @@ Feeder::Feeder(const FeederSettings& settings, const FeederPlan& plan)
     : settings_(settings)
     , plan_(plan)
     , pacing_(settings.pacing)
+    , numbering_(plan.numbering)
     , broken_off_(plan.open ? plan.open->broken_off : RecordNumber{}) {}
 
 void Feeder::on_machine_status(const protocol::MachineStatus& status, Instant now, Actions& out) {
@@ -107,7 +108,8 @@ void Feeder::on_mail_status(const protocol::MailStatus& status, Instant now, Act
     }
     mail_answered(now);
     answers_lost_ = 0;
-    mail_ = status;
+    said_ = status;
+    mail_ = in_places(status);
     ++mail_reads_;
     switch (phase_) {
     case Phase::locating:

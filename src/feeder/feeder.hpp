@@ -1,12 +1,14 @@
-// The refill and resume machine of one printer: facts and time in, actions out. It knows record numbers, never bytes or
-// sockets, reads no clock and does no I/O. The sequence is the manual's own (protocol, section 5): identify, status,
-// where are we, flush, stop point with read-back, fill, verify, GO, refills, stop, and after any stop the truth.
+// The refill and resume machine of one printer: facts and time in, actions out. It knows records by their places
+// (numbering.hpp), never bytes or sockets, reads no clock and does no I/O. The sequence is the manual's own (protocol,
+// section 5): identify, status, where are we, flush, stop point with read-back, fill, verify, GO, refills, stop, and
+// after any stop the truth.
 #pragma once
 
 #include "base/record_number.hpp"
 #include "base/time.hpp"
 #include "feeder/actions.hpp"
 #include "feeder/counter_proof.hpp"
+#include "feeder/numbering.hpp"
 #include "feeder/pacing.hpp"
 #include "feeder/refill.hpp"
 
@@ -61,6 +63,8 @@ struct FeederSettings {
 struct FeederPlan {
     /// Records issued earlier whose fate the printer may know.
     std::optional<OpenRun> open;
+    /// Of the open run.
+    Numbering numbering{};
     /// If some of those stay in doubt, nothing is printed before an operator has decided.
     bool doubt_blocks = true;
     /// The open run may be gone on with if it is found printing.
@@ -133,6 +137,11 @@ public:
     /// A Settle is durable.
     void on_settled(Instant now, Actions& out);
     void on_storage_failed(Instant now, Actions& out);
+    /// A job of `count` records may follow without a stop. Nothing comes of it where the printer, or the time that is
+    /// left, does not allow that.
+    void on_follower_known(RecordCount count);
+    /// Its run has begun: its records lie at `places`, and the first has the number `number` in its job.
+    void on_follower_begun(RecordRange places, RecordNumber number, Actions& out);
 
     /// Stop the line and find the truth.
     void request_stop(Instant now, Actions& out);
@@ -144,7 +153,10 @@ public:
     [[nodiscard]] Phase phase() const { return phase_; }
     [[nodiscard]] const Refill& refill() const { return refill_; }
     [[nodiscard]] double rate() const { return pacing_.rate(); }
-    /// As last reported.
+    [[nodiscard]] const Numbering& numbering() const { return numbering_; }
+    /// The places of the job at work: with a follower behind it, those up to its own end; behind it, the follower's.
+    [[nodiscard]] RecordRange job_places() const;
+    /// As last reported, with the place of the last printed record.
     [[nodiscard]] const protocol::MailStatus& mail() const { return mail_; }
     [[nodiscard]] const protocol::MachineStatus& machine() const { return status_; }
 
@@ -161,6 +173,15 @@ private:
         wanted,   ///< the end is known; the FIFO is being filled
         draining, ///< nothing is sent until all has arrived that was
         sent,     ///< `=CM` is on its way; nothing is sent until it is read back
+    };
+
+    /// The job that follows without a stop.
+    enum class Follower {
+        none,
+        offered,  ///< there is one
+        begins,   ///< its run is to begin
+        behind,   ///< its records are sent behind those of the job; the stop point still stands at the job's end
+        crossing, ///< enough of it lies in the FIFO: the stop point goes behind everything, until it prints
     };
 
     // feeder_time.cpp: asking and waiting, and locate_step() of feeder.cpp
@@ -246,6 +267,25 @@ private:
     void set_stop_point_again(Actions& out);
     void all_printed(Instant now, Actions& out);
     void refill_now(Actions& out);
+    void send(RecordRange records, Actions& out);
+
+    // feeder_follower.cpp: the job that follows without a stop
+    [[nodiscard]] protocol::MailStatus in_places(const protocol::MailStatus& said) const;
+    [[nodiscard]] bool follows() const { return follower_ == Follower::behind || follower_ == Follower::crossing; }
+    [[nodiscard]] bool stops_by_itself_at(RecordNumber place) const;
+    [[nodiscard]] bool follower_may_begin() const;
+    void look_for_follower(Instant now, Actions& out);
+    void ask_whether_counter_moves(Instant now, Actions& out);
+    [[nodiscard]] bool moves_with_prints(std::optional<std::uint32_t> prints, std::uint64_t sent) const;
+    void begin_follower(Actions& out);
+    [[nodiscard]] RecordCount without_lone_zero(RecordCount most) const;
+    [[nodiscard]] bool is_first_behind_boundary();
+    [[nodiscard]] bool head_is_there() const;
+    void cross_over();
+    void crossed_over(Actions& out);
+    void replace_stop_point(RecordNumber number);
+    [[nodiscard]] Evidence with_certain_place(Evidence seen, const OpenRun& run) const;
+    [[nodiscard]] Evidence as_said(Evidence seen) const;
 
     // feeder_supply.cpp: while the end of the run is not known
     void move_stop_point(Actions& out);
@@ -284,7 +324,9 @@ private:
     Phase phase_ = Phase::idle;
 
     protocol::MachineStatus status_;
-    protocol::MailStatus mail_;
+    Numbering numbering_;
+    protocol::MailStatus said_; ///< the last `=SM`
+    protocol::MailStatus mail_; ///< the same, with the place of the last printed record
     PrinterFacts facts_;
 
     int mail_reads_ = 0;        ///< `=SM` answers in this phase
@@ -342,9 +384,10 @@ private:
     std::uint64_t excess_of_fill_ = 0; ///< 1: its firmware counts the loaded record, too
     std::optional<std::uint32_t> total_before_;
     StopPoint stop_point_ = StopPoint::unset;
+    RecordNumber stop_number_; ///< that of the stop point, as it goes out
     int stop_point_tries_ = 0;
     StopMove stop_move_ = StopMove::none;
-    std::optional<RecordNumber> old_stop_point_; ///< set before the end was known; the new one has not been read back
+    std::optional<RecordNumber> old_stop_point_; ///< the number before the move; the new one has not been read back
     int old_answers_left_ = 0;               ///< answers that may be from before `=CM`, or before this step of its move
     bool supply_noticed_ = false;            ///< low, and said so
     std::optional<Instant> suspected_since_; ///< the stop point vanished: nothing is sent before `?RS` has told why
@@ -365,6 +408,13 @@ private:
     RecordNumber confirmed_through_; ///< of those, confirmed to the ledger
     CounterProof counter_proof_;     ///< of the reported number, where a stop would not show
     std::optional<OutcomeCode> cause_;
+
+    Follower follower_ = Follower::none;
+    RecordCount follower_records_;
+    bool behind_boundary_ = false; ///< the place that was reported last
+    RecordNumber boundary_;        ///< the place of the job's last record, while another follows
+    RecordNumber job_first_{};     ///< the place of the first record of the job at work, behind a follower's crossing
+    bool counter_moves_ = false;   ///< the total print counter, since this run began
 };
 
 } // namespace linefeed::feeder

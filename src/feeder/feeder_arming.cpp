@@ -145,6 +145,8 @@ void Feeder::on_granted(RecordRange range, RecordNumber durable_through, Instant
     refill_.begin(range, std::min(RecordCount{mail_.depth}, settings_.level_at_most));
     refill_.durable(durable_through);
     confirmed_through_ = reported_through_ = range.first().previous();
+    stop_number_ = range.last();
+    job_first_ = range.first();
     total_before_ = facts_.total_prints;
     left_over_ = mail_.last_printed;
     broken_off_ = RecordNumber{}; // of the earlier run, which is settled
@@ -179,12 +181,12 @@ void Feeder::flushed(Instant now, Actions& out) {
 
 void Feeder::set_stop_point(Instant now, Actions& out) {
     enter(Phase::setting_stop, now, Duration::max());
-    out.push_back(SetStopAt{refill_.range().last()});
+    out.push_back(SetStopAt{stop_number_});
     ask(Parameter::SM, now, out);
 }
 
 void Feeder::stop_point_answered(Instant now, Actions& out) {
-    if ((mail_.stop_at != refill_.range().last() || printed_for_another()) && mail_reads_ < 2) {
+    if ((mail_.stop_at != stop_number_ || printed_for_another()) && mail_reads_ < 2) {
         ask(Parameter::SM, now, out);
         return;
     }
@@ -193,7 +195,7 @@ void Feeder::stop_point_answered(Instant now, Actions& out) {
         return;
     }
     // Some firmware keeps the stop point only once it is printing: insist_on_stop_point() tries again there.
-    stop_point_ = mail_.stop_at == refill_.range().last() ? StopPoint::kept_idle : StopPoint::unset;
+    stop_point_ = mail_.stop_at == stop_number_ ? StopPoint::kept_idle : StopPoint::unset;
     enter(Phase::loading, now, Duration::max());
     try_loading(now, out);
 }
@@ -216,7 +218,7 @@ void Feeder::try_loading(Instant now, Actions& out) {
 void Feeder::verify(Instant now, Actions& out) {
     const std::uint64_t sent = refill_.level().value();
     const bool as_expected = mail_.entries + std::uint64_t{1} == sent;
-    const bool stop_point_stands = stop_point_ != StopPoint::kept_idle || mail_.stop_at == refill_.range().last();
+    const bool stop_point_stands = stop_point_ != StopPoint::kept_idle || mail_.stop_at == stop_number_;
     if (!(as_expected && stop_point_stands && !printed_for_another()) && mail_reads_ < 2) {
         ask(Parameter::SM, now, out);
         return;

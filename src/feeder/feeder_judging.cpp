@@ -30,20 +30,22 @@ OpenRun Feeder::open_run() const {
 
 Evidence Feeder::evidence() const {
     if (!has_granted_records()) {
-        return {.mail = mail_, .printer = facts_, .broken_off = broken_off_};
+        return with_certain_place({.mail = mail_, .printer = facts_, .broken_off = broken_off_}, *plan_.open);
     }
     // Another client may have set a stop point before the end: then the number contradicts the message.
     const bool at_the_end = mail_.last_printed == refill_.range().last() || mail_.last_printed == RecordNumber{};
-    return {.mail = mail_,
-            .printer = facts_,
-            .end_message = is_error(status_.error, protocol::error_code::last_record_printed) && at_the_end &&
-                           stop_would_show() && refill_.all_sent() && !restarted_,
-            .uninterrupted = !memory_lost_,
-            .restarted = restarted_,
-            .restart_unseen = counter_proof_.doubted(),
-            .fed_by_another = fed_by_another_ || is_error(status_.error, protocol::error_code::buffer_full) ||
-                              (!total_before_ && breaks_numbers(status_.error)), // a counter would tell
-            .broken_off = broken_off_};
+    const Evidence seen{
+        .mail = mail_,
+        .printer = facts_,
+        .end_message = is_error(status_.error, protocol::error_code::last_record_printed) && at_the_end &&
+                       stop_would_show() && refill_.all_sent() && !restarted_ && !follows(),
+        .uninterrupted = !memory_lost_,
+        .restarted = restarted_,
+        .restart_unseen = counter_proof_.doubted(),
+        .fed_by_another = fed_by_another_ || is_error(status_.error, protocol::error_code::buffer_full) ||
+                          (!total_before_ && breaks_numbers(status_.error)), // a counter would tell
+        .broken_off = broken_off_};
+    return with_certain_place(seen, open_run());
 }
 
 /// A record that is unproven is not surely printed: a product may carry a damaged text.
@@ -86,7 +88,7 @@ void Feeder::record_printed(const Verdict& verdict, const Evidence& seen, Instan
     }
     enter(Phase::recording, now, settings_.stop_timeout);
     const Verdict surely{.printed = verdict.printed, .basis = verdict.basis};
-    out.push_back(Settle{surely, seen, !has_granted_records(), true, confirmed});
+    out.push_back(Settle{surely, as_said(seen), !has_granted_records(), true, confirmed});
     ++settles_pending_;
 }
 
@@ -97,8 +99,14 @@ void Feeder::on_settled(Instant now, Actions& out) {
     }
 }
 
+/// Started meanwhile, a printer whose FIFO is flushed prints its last record again and again if that has number 0
+/// (protocol, section 5, the numbering law): such a one is stopped first.
 void Feeder::clear(Instant now, Actions& out) {
+    const OpenRun run = open_run();
     enter(Phase::clearing, now, settings_.flush_timeout);
+    if (numbering_.has_zero(run.printed_through, run.issued_through)) {
+        out.push_back(Command{protocol::Action::stop_print});
+    }
     out.push_back(Command{protocol::Action::flush_fifo});
     ask(Parameter::RS, now, out);
 }
@@ -132,10 +140,12 @@ void Feeder::judge_finally(Instant now, Actions& out) {
 
 /// The final verdict goes to the ledger, and the run ends or begins.
 void Feeder::settle(const Verdict& verdict, const Evidence& seen, Instant now, Actions& out) {
-    out.push_back(Settle{verdict, seen, !has_granted_records(), false, confirmed_through_});
+    out.push_back(Settle{verdict, as_said(seen), !has_granted_records(), false, confirmed_through_});
     ++settles_pending_;
     if (!has_granted_records()) {
         plan_.open.reset();
+        numbering_ = {};
+        mail_ = said_;
         if (verdict.in_doubt.empty() || !plan_.doubt_blocks) {
             check_ready(now, out);
         } else {
@@ -144,7 +154,7 @@ void Feeder::settle(const Verdict& verdict, const Evidence& seen, Instant now, A
         return;
     }
     const RecordNumber printed = verdict.printed.empty() ? confirmed_through_ : verdict.printed.last();
-    if (verdict.in_doubt.empty() && printed == refill_.range().last()) {
+    if (verdict.in_doubt.empty() && stops_by_itself_at(printed)) {
         finish(now, out);
     } else {
         end(*cause_, out);

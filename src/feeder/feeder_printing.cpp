@@ -5,6 +5,7 @@
 #include "feeder/mailing_error.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace linefeed::feeder {
 
@@ -70,8 +71,11 @@ void Feeder::print_error(Instant now, Actions& out) {
 }
 
 void Feeder::print_mail(Instant now, Actions& out) {
-    if (!stop_point_vanished(now, out) && follow(now, out) && reported_through_ == refill_.range().last()) {
-        all_printed(now, out);
+    if (!stop_point_vanished(now, out) && follow(now, out)) {
+        look_for_follower(now, out);
+        if (reported_through_ == refill_.range().last()) {
+            all_printed(now, out);
+        }
     }
     if (phase_ == Phase::printing) {
         poll_on(now);
@@ -110,7 +114,7 @@ Feeder::Report Feeder::judge_report() {
     const std::uint64_t held = mail_.last_printed.value() + waiting;
     const std::uint64_t sent = refill_.sent_through().value() + (marker_sent_ ? std::uint64_t{1} : 0);
     const std::uint64_t excess = held - std::min(held, sent);
-    const bool odd = excess > 0 || mail_.last_printed < refill_.printed_through();
+    const bool odd = excess > 0 || mail_.last_printed < refill_.printed_through() || is_first_behind_boundary();
     const bool repeated = odd_excess_ == excess;
     odd_excess_ = odd ? std::optional{excess} : std::nullopt;
     if (!odd || (repeated && excess <= excess_of_fill_)) {
@@ -239,7 +243,7 @@ std::uint64_t Feeder::prints_through(RecordNumber number) const {
 void Feeder::confirm(RecordNumber through, Actions& out) {
     if (through > confirmed_through_) {
         confirmed_through_ = through;
-        out.push_back(ConfirmPrinted{through, mail_});
+        out.push_back(ConfirmPrinted{through, said_});
     }
 }
 
@@ -249,6 +253,10 @@ void Feeder::print_counters(std::uint32_t total, Instant now, Actions& out) {
         prints = total - *total_before_;
     }
     const std::uint64_t sent = prints_through(refill_.sent_through()) + (marker_sent_ ? 1 : 0);
+    counter_moves_ = moves_with_prints(prints, sent);
+    if (!counter_proof_.doubted()) {
+        return;
+    }
     switch (counter_proof_.counted(prints, prints_through(reported_through_), sent, stop_would_show(), now)) {
     case CounterProof::Result::consistent:
         return;
@@ -297,7 +305,7 @@ void Feeder::stop_suspected(Instant now, Actions& out) {
         broken_off_ = RecordNumber{};
         return;
     }
-    restarted_ = mail_.last_printed != refill_.range().last();
+    restarted_ = !stops_by_itself_at(mail_.last_printed);
     if (now - *suspected_since_ < stop_patience) {
         ask_later(Parameter::RS, now);
     } else {
@@ -312,7 +320,7 @@ void Feeder::insist_on_stop_point(Actions& out) {
     if (stop_point_ != StopPoint::unset) {
         return;
     }
-    if (mail_.stop_at == refill_.range().last()) {
+    if (mail_.stop_at == stop_number_) {
         stop_point_ = StopPoint::kept;
         return;
     }
@@ -330,7 +338,7 @@ void Feeder::insist_on_stop_point(Actions& out) {
 
 void Feeder::set_stop_point_again(Actions& out) {
     ++stop_point_tries_;
-    out.push_back(SetStopAt{refill_.range().last()});
+    out.push_back(SetStopAt{stop_number_});
     await_new_answers();
 }
 
@@ -341,20 +349,30 @@ void Feeder::refill_now(Actions& out) {
     if (const auto intent = refill_.next_intent()) {
         out.push_back(AskIntent{*intent});
     }
-    const RecordCount most = phase_ == Phase::verifying ? settings_.fill_at_most : settings_.refill_at_most;
+    const RecordCount most =
+        phase_ == Phase::verifying ? settings_.fill_at_most : without_lone_zero(settings_.refill_at_most);
     const bool rest = refill_.sent_through() + refill_.ready() == refill_.range().last();
     if (rest || Pacing::worth_sending(refill_.ready(), refill_.level(), refill_.depth())) {
         if (const RecordRange range = refill_.take(most); !range.empty()) {
-            any_sent_ = true;
-            out.push_back(SendRecords{range});
+            send(range, out);
         }
     }
     const bool room = refill_.level() < refill_.depth();
     if (stop_point_ == StopPoint::ignored && refill_.all_sent() && !marker_sent_ && room &&
-        refill_.range().last() < RecordNumber::max()) {
+        numbering_.number_of(refill_.range().last()) < RecordNumber::max()) {
         marker_sent_ = true;
-        out.push_back(SendEndMarker{refill_.range().last().next()});
+        out.push_back(SendEndMarker{numbering_.number_of(refill_.range().last()).next()});
     }
+}
+
+/// Those of two jobs apart.
+void Feeder::send(RecordRange records, Actions& out) {
+    any_sent_ = true;
+    if (follows() && records.contains(boundary_) && boundary_ < records.last()) {
+        out.push_back(SendRecords{RecordRange::closed(records.first(), boundary_)});
+        records = RecordRange::closed(boundary_.next(), records.last());
+    }
+    out.push_back(SendRecords{records});
 }
 
 /// A printer that keeps the stop point stops by itself; any other is stopped, and so is one that takes too long.

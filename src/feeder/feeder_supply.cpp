@@ -1,12 +1,14 @@
 // The feeder while the records are still coming: a run may begin before anybody knows its last record. Until then the
 // stop point stands behind every record that can come, so that its vanishing shows a stop as always; when the end is
-// known, the stop point is moved there.
+// known, the stop point is moved there. It is moved as well when another job follows (feeder_follower.cpp).
 //
 // The move could hide a stop: a printer that is stopped and started again at its panel has lost its FIFO, and shows
 // that by a stop point of 0, unless the new one has just reached it. So nothing is sent while the stop point moves: a
 // FIFO that was lost is then still empty behind the move. It is moved when the FIFO is well filled, or nothing is left
 // to be sent.
 #include "feeder/feeder.hpp"
+
+#include <utility>
 
 namespace linefeed::feeder {
 
@@ -23,7 +25,7 @@ void Feeder::on_end_known(RecordNumber last, Instant now, Actions& out) {
     if (phase_ == Phase::ended || !has_granted_records() || last >= refill_.range().last()) {
         return;
     }
-    const RecordNumber before = refill_.range().last();
+    const RecordNumber before = std::exchange(stop_number_, last);
     refill_.end_at(last);
     switch (phase_) {
     case Phase::setting_stop:
@@ -75,7 +77,7 @@ void Feeder::await_new_answers() {
 }
 
 bool Feeder::stop_point_stands() const {
-    return mail_.stop_at == refill_.range().last() || (old_stop_point_ && mail_.stop_at == *old_stop_point_);
+    return mail_.stop_at == stop_number_ || (old_stop_point_ && mail_.stop_at == *old_stop_point_);
 }
 
 bool Feeder::refill_waits() const {
@@ -94,10 +96,12 @@ void Feeder::follow_stop_point(Instant now, Actions& out) {
         --old_answers_left_;
     } else if (stop_move_ == StopMove::draining) {
         move_stop_point(out); // all that was sent has arrived, and no stop came before
-    } else if (mail_.stop_at == refill_.range().last()) {
+    } else if (mail_.stop_at == stop_number_) {
         stop_point_moved(now, out);
     } else if (stop_point_tries_ < max_moves) {
         move_stop_point(out);
+    } else if (follower_ == Follower::crossing) {
+        stop_move_ = StopMove::none; // it stops at the end of the job, or does not: either is seen
     } else {
         stop_move_ = StopMove::none;
         old_stop_point_.reset();
@@ -120,7 +124,7 @@ void Feeder::stop_point_moved(Instant now, Actions& out) {
 /// Warns once before the printer runs empty because records are not at hand.
 void Feeder::watch_supply(Actions& out) {
     const bool low = refill_.level().value() < refill_.depth().value() / low_level_part;
-    if (!refill_.starved()) {
+    if (!refill_.starved() || (follows() && refill_.sent_through() >= boundary_)) { // the job is there
         supply_noticed_ = supply_noticed_ && low;
     } else if (low && !supply_noticed_) {
         supply_noticed_ = true;

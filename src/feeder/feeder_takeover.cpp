@@ -58,7 +58,7 @@ void Feeder::takeover_step(Instant now, Actions& out) {
         enter(Phase::granting, now, Duration::max());
         taking_over_ = true;
         any_sent_ = true; // by the earlier run
-        out.push_back(AdoptRun{confirmed_through_, taken_sent_through_, mail_});
+        out.push_back(AdoptRun{confirmed_through_, taken_sent_through_, said_});
     }
 }
 
@@ -109,7 +109,9 @@ void Feeder::taken_over(RecordRange range, RecordNumber durable_through, Instant
     pacing_.restart(now, refill_.printed_through() - range.first().previous());
     out.push_back(Notice{NoticeCode::taken_over, {}});
     out.push_back(Notice{NoticeCode::printing_started, {}});
-    stop_point_ = mail_.stop_at == range.last() ? StopPoint::kept : StopPoint::unset;
+    job_first_ = range.first();
+    stop_number_ = numbering_.on_wire(range.last());
+    stop_point_ = mail_.stop_at == stop_number_ ? StopPoint::kept : StopPoint::unset;
     if (stop_point_ == StopPoint::unset) {
         set_stop_point_again(out);
     }

@@ -35,6 +35,12 @@ void Refill::end_at(RecordNumber last) {
     check();
 }
 
+void Refill::extend(RecordNumber last) {
+    LINEFEED_ASSERT(last > range_.last());
+    range_ = RecordRange::closed(range_.first(), last);
+    check();
+}
+
 void Refill::supplied(RecordNumber through) {
     supplied_through_ = std::max(supplied_through_, std::min(through, range_.last()));
     check();

@@ -29,6 +29,9 @@ public:
     /// The run ends with `last`, before the end of its range. Precondition: nothing behind it was supplied.
     void end_at(RecordNumber last);
 
+    /// Another job follows: the run goes on through `last`. Precondition: behind its end.
+    void extend(RecordNumber last);
+
     /// Records up to `through` are in memory.
     void supplied(RecordNumber through);
     /// Intents up to `through` are durable.

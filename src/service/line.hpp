@@ -12,6 +12,7 @@
 #include "printer/printer_commands.hpp"
 #include "printer/task.hpp"
 #include "service/event_log.hpp"
+#include "service/follower.hpp"
 #include "service/spool_access.hpp"
 #include "store/ledger_keeper.hpp"
 
@@ -41,7 +42,15 @@ struct LineServices {
     EventLog& events;
     /// The line has nothing to do any more, and nobody has stopped it; called on its thread.
     std::function<void(const std::string& printer)> on_idle;
+    /// The next job of the queue is on the line from now on (Line::take_follower()), to follow the one at work without
+    /// a stop; absent = none may, for now. Called on the line's thread; does not wait for anybody's orders.
+    std::function<std::optional<JobFacts>(const std::string& printer, const FollowerWanted& wanted)> claim_follower;
 };
+
+/// What stands on a job while it is on the line, and so what is found if the service does not get to write more.
+inline constexpr const char* interrupted_words =
+    "the service ended while this job was on the line: what is in the printer may "
+    "still be printed; resume it to find out and to go on";
 
 /// How the last job on the line ended.
 struct Ending {
@@ -75,6 +84,11 @@ public:
     /// it is on the line already, for all who look. FailureKind::stopped if the line is busy, or held and nobody has
     /// asked for it; or as `write_down` fails.
     [[nodiscard]] Result<void> start(spool::JobId job, StartedBy who, const std::function<Result<void>()>& write_down);
+    /// `job` is to follow the job `behind` without a stop, as soon as `write_down` has written a ticket that says so;
+    /// until then it is on the line already, for all who look. FailureKind::stopped if that is not at work any more, is
+    /// being stopped, or nothing may start by itself; or as `write_down` fails.
+    [[nodiscard]] Result<void> take_follower(const spool::Job& job, spool::JobId behind,
+                                             const std::function<Result<void>()>& write_down);
     /// Begins to stop what is armed or printed.
     void request_stop();
     /// As request_stop(); and from now on nothing starts by itself until an operator starts something.
@@ -92,6 +106,8 @@ public:
         daemon::JobPhase phase = daemon::JobPhase::arming;
     };
     [[nodiscard]] std::optional<Active> active() const;
+    /// active(); behind it the job that is to follow it, and the one before it until the ledger says that it is over.
+    [[nodiscard]] std::vector<Active> on_line() const;
     [[nodiscard]] bool idle() const { return !active(); }
     /// Without its queue.
     [[nodiscard]] daemon::PrinterView view();
@@ -158,11 +174,32 @@ private:
     [[nodiscard]] Result<Ending> print_runs(spool::JobId job);
     [[nodiscard]] bool is_stop_requested() const;
     [[nodiscard]] Result<daemon::JobRunSettings> run_settings(const spool::Job& job);
+    /// Of all runs behind one order.
+    struct Means {
+        daemon::JobRunSettings settings;
+        daemon::NoisePatience patience;
+        FollowerWanted follower;
+    };
     [[nodiscard]] Ending run(const JobFacts& facts, RecordRange wanted, const std::optional<store::OpenIssue>& open,
-                             daemon::JobRunSettings& settings, daemon::NoisePatience& patience);
-    void watch(daemon::JobRun& run, spool::JobId job);
+                             Means& means);
+    void watch(daemon::JobRun& run, const std::function<void()>& meanwhile);
     void take_notice(const feeder::Notice& notice, spool::JobId job);
+
+    // line_conclude.cpp: how jobs end
+    [[nodiscard]] static std::string words_of(const Ending& ending);
     void conclude(const Ending& ending);
+    void close_job(spool::JobId job, const std::string& words);
+
+    // line_chain.cpp: one job behind the other without a stop
+    [[nodiscard]] static FollowerWanted follower_wanted(const spool::Job& job, const daemon::JobRunSettings& settings);
+    [[nodiscard]] bool takes_follower(spool::JobId behind) const;
+    [[nodiscard]] spool::JobId at_work() const;
+    void look_after_chain(daemon::JobRun& run, const FollowerWanted& wanted);
+    void follow(const daemon::RunProgress& progress);
+    [[nodiscard]] bool goes_on_with_follower();
+    void look_for_follower(daemon::JobRun& run, const daemon::RunProgress& progress, FollowerWanted wanted);
+    void conclude_earlier(const std::optional<std::string>& words);
+    void let_go_of_follower(const Ending& ending, const std::string& words);
 
     // line_checks.cpp: what comes before a run
     [[nodiscard]] Result<std::optional<Ending>> ask_about_others(const spool::Job& job);
@@ -179,17 +216,23 @@ private:
     mutable std::mutex mutex_; ///< for what follows
     mutable std::condition_variable changed_;
     SharedSettings settings_;
-    std::optional<spool::JobId> active_; ///< ordered, or under way
-    std::uint64_t orders_ = 0;           ///< so many so far
-    bool written_down_ = false;          ///< the order may be carried out
-    bool checking_ = false;              ///< preflight
+    std::optional<spool::JobId> active_; ///< ordered, or under way: the job at work
+    struct Follower {
+        spool::JobId job{};
+        RecordRange records;
+    };
+    std::optional<Follower> follower_;      ///< claimed to follow without a stop
+    std::optional<spool::JobId> finishing_; ///< the job before that at work, until the ledger says that it is over
+    std::uint64_t orders_ = 0;              ///< so many so far
+    bool written_down_ = false;             ///< the order may be carried out
+    bool checking_ = false;                 ///< preflight
     std::uint32_t reserved_ = 0; ///< for so many commands that no job may meet: the next one waits for their end
     std::uint32_t talks_ = 0;    ///< so many go on that somebody has asked for: no glance at the printer meanwhile
     bool stop_requested_ = false;
     bool held_ = false; ///< stopped by an operator
     bool closing_ = false;
     daemon::JobRun* run_ = nullptr;      ///< under way
-    std::optional<RecordRange> records_; ///< of the job that is on the line
+    std::optional<RecordRange> records_; ///< of the job at work
     bool supply_low_ = false;
     std::optional<Ending> last_ending_;
     /// As last heard of, by whatever way.
@@ -208,8 +251,11 @@ private:
 
     std::shared_ptr<printer::PanelHold> panel_;
 
-    daemon::PrinterWatch watch_; ///< the thread's own
-    std::mutex conversations_;   ///< short ones, one at a time, besides printing: the printer may serve no more
+    // The thread's own
+    daemon::PrinterWatch watch_;
+    std::chrono::steady_clock::time_point claim_at_{}; ///< not before: there was nothing to claim
+
+    std::mutex conversations_; ///< short ones, one at a time, besides printing: the printer may serve no more
 
     std::mutex panel_orders_; ///< one at a time holds or releases the panel, also while the printer is talked to
 

@@ -30,10 +30,9 @@ OutcomeCode outcome_of(const daemon::Finding& finding) {
 Result<std::optional<Ending>> Line::ask_about_others(const spool::Job& job) {
     const SharedSettings all = settings();
     const config::PrinterSettings* const own = all->printer(printer_);
-    const auto others = own == nullptr
-                            ? Result<bool>{false}
-                            : daemon::has_other_jobs(services_.threads, job.id, link::to_string(own->address));
-    if (!others || !*others) {
+    const auto others = own == nullptr ? Result<std::vector<spool::JobId>>{std::vector<spool::JobId>{}}
+                                       : daemon::other_jobs(services_.threads, job.id, link::to_string(own->address));
+    if (!others || others->empty()) {
         return others ? Result<std::optional<Ending>>{std::nullopt} : others.error();
     }
     if (auto stranger = check_identity(job); !stranger || *stranger) {
@@ -43,14 +42,12 @@ Result<std::optional<Ending>> Line::ask_about_others(const spool::Job& job) {
     if (!settings) {
         return settings.error();
     }
-    std::vector<spool::JobId> asked;
     const auto hindrance = daemon::settle_other_jobs(
         services_.threads, services_.spool, job.id, *settings, [&](daemon::JobRun& run, spool::JobId other) {
             event(event_kind::printer_notice, other, "may have records in this printer: asking how far it came");
-            asked.push_back(other);
-            watch(run, job.id);
+            watch(run, [] {});
         });
-    for (const spool::JobId other : asked) {
+    for (const spool::JobId other : *others) {
         take_note_of(other);
     }
     if (!hindrance) {

@@ -34,7 +34,7 @@ Result<Before> look(SpoolAccess& access, spool::JobId job) {
 /// An earlier run that may still be printing can be gone on with up to where it was to end.
 RecordRange wanted_records(const Before& before) {
     const RecordRange all = before.facts.job.records;
-    return before.open ? RecordRange::closed(all.first(), before.open->run_range.last()) : all;
+    return before.open ? RecordRange::closed(all.first(), before.open->of(before.facts.job.id)->run_range.last()) : all;
 }
 
 } // namespace
@@ -44,9 +44,11 @@ void Line::print(spool::JobId job) {
     if (!ending) {
         const bool reachable = ending.error().kind != FailureKind::unreachable;
         const OutcomeCode code = reachable ? OutcomeCode::storage_failed : OutcomeCode::unreachable;
-        ending = Ending{job, {.code = code, .issued = false}, ending.error().message};
+        ending = Ending{at_work(), {.code = code, .issued = false}, ending.error().message};
     }
     conclude(*ending);
+    ending->noise_only = false; // nothing goes on
+    let_go_of_follower(*ending, words_of(*ending));
 }
 
 Result<daemon::JobRunSettings> Line::run_settings(const spool::Job& job) {
@@ -91,13 +93,13 @@ Result<Ending> Line::print_runs(spool::JobId job) {
         return settings.error();
     }
     Ending ending{job, {.code = OutcomeCode::nothing_to_print, .issued = false}, {}};
-    daemon::NoisePatience patience;
-    if (const std::string words = daemon::line_words(settings->printer, daemon::record_bytes(before->facts.job));
+    Means means{*settings, {}, follower_wanted(before->facts.job, *settings)};
+    if (const std::string words = daemon::line_words(means.settings.printer, daemon::record_bytes(before->facts.job));
         !words.empty()) {
         event(event_kind::printer_notice, job, words);
     }
     while (true) {
-        before = look(services_.access, job);
+        before = look(services_.access, ending.job); // another than at first if that has followed
         if (!before) {
             return before.error();
         }
@@ -105,6 +107,10 @@ Result<Ending> Line::print_runs(spool::JobId job) {
         if (told && before->facts.in(RecordState::in_doubt) > RecordCount{0}) {
             ending.outcome.code = OutcomeCode::records_in_doubt;
             return ending;
+        }
+        if (told && before->facts.next().empty() && goes_on_with_follower()) {
+            ending.job = at_work();
+            continue;
         }
         if (told && before->facts.next().empty()) {
             ending.outcome.code = OutcomeCode::finished;
@@ -114,7 +120,7 @@ Result<Ending> Line::print_runs(spool::JobId job) {
             ending.outcome.code = OutcomeCode::stop_requested;
             return ending;
         }
-        ending = run(before->facts, wanted_records(*before), before->open, *settings, patience);
+        ending = run(before->facts, wanted_records(*before), before->open, means);
         const bool goes_on =
             ending.noise_only || ending.outcome.code == OutcomeCode::finished ||
             (ending.outcome.code == OutcomeCode::records_in_doubt && !ending.outcome.issued) ||
@@ -130,26 +136,28 @@ bool Line::is_stop_requested() const {
     return stop_requested_;
 }
 
-Ending Line::run(const JobFacts& facts, RecordRange wanted, const std::optional<OpenIssue>& open,
-                 daemon::JobRunSettings& settings, daemon::NoisePatience& patience) {
-    JobRun run{services_.threads, services_.spool, facts.job, wanted, open, settings};
+Ending Line::run(const JobFacts& facts, RecordRange wanted, const std::optional<OpenIssue>& open, Means& means) {
+    JobRun run{services_.threads, services_.spool, facts.job, wanted, open, means.settings};
     {
         const std::lock_guard lock{mutex_};
         records_ = facts.job.records;
     }
     run.start();
-    watch(run, facts.job.id);
+    watch(run, [&] { look_after_chain(run, means.follower); });
     run.join();
-    Ending ending{facts.job.id, run.outcome(), run.detail()};
-    ending.noise_only = patience.goes_on(ending.outcome, run.progress(), settings);
+    follow(run.progress());
+    Ending ending{at_work(), run.outcome(), run.detail()};
+    ending.noise_only = means.patience.goes_on(ending.outcome, run.progress(), means.settings);
     if (ending.noise_only) {
-        event(event_kind::printer_warning, facts.job.id, feeder::describe(ending.outcome) + "; going on");
+        event(event_kind::printer_warning, ending.job, feeder::describe(ending.outcome) + "; going on");
     }
+    conclude_earlier(words_of(ending));
+    let_go_of_follower(ending, words_of(ending));
     return ending;
 }
 
 /// Until the run is finished. A stop that was asked for before it reaches it as well.
-void Line::watch(JobRun& run, spool::JobId job) {
+void Line::watch(JobRun& run, const std::function<void()>& meanwhile) {
     constexpr int wait_ms = 200;
     {
         const std::lock_guard lock{mutex_};
@@ -161,8 +169,9 @@ void Line::watch(JobRun& run, spool::JobId job) {
     while (!run.finished()) {
         run.wait(wait_ms);
         for (const feeder::Notice& notice : run.take_notices()) {
-            take_notice(notice, job);
+            take_notice(notice, at_work());
         }
+        meanwhile();
     }
     const std::lock_guard lock{mutex_};
     hear(run.progress());
@@ -181,6 +190,8 @@ void Line::take_notice(const feeder::Notice& notice, spool::JobId job) {
     case NoticeCode::printing_started:
         event(event_kind::job_printing, job, "printing");
         return;
+    case NoticeCode::follower_printing: // follow() tells it
+        return;
     case NoticeCode::supply_low: {
         const std::lock_guard lock{mutex_};
         supply_low_ = true;
@@ -198,62 +209,6 @@ void Line::take_notice(const feeder::Notice& notice, spool::JobId job) {
         return;
     }
     event(event_kind::printer_warning, job, feeder::describe(notice));
-}
-
-namespace {
-
-bool shows_error(OutcomeCode code) {
-    return code == OutcomeCode::printer_error || code == OutcomeCode::error_pending;
-}
-
-} // namespace
-
-/// Writes down why it ended. The ledger says where it stands; here is only what a person needs besides.
-void Line::conclude(const Ending& given) {
-    Ending ending = given;
-    const std::string detail = ending.words;
-    if (!ending.said) {
-        ending.words = feeder::describe(ending.outcome) + (detail.empty() ? "" : ": " + detail);
-    }
-    const auto after = services_.access.write([&](spool::Spool& spool) -> Result<JobFacts> {
-        auto facts = read_facts(spool, ending.job);
-        if (!facts) {
-            return facts;
-        }
-        spool::Ticket ticket = facts->ticket_or_new();
-        const bool finished = phase_of(*facts, {}) == daemon::JobPhase::finished;
-        ticket.begun = !finished;
-        ticket.message = finished ? "" : ending.words;
-        if (finished) {
-            ticket.place.reset();
-        }
-        auto written = spool.write_ticket(ticket);
-        return written ? std::move(facts) : Result<JobFacts>{written.error()};
-    });
-    {
-        const std::lock_guard lock{mutex_};
-        last_ending_ = ending;
-        supply_low_ = false;
-    }
-    if (!after) {
-        event(event_kind::storage_failed, ending.job, after.error().message);
-        return;
-    }
-    const daemon::JobView view = daemon::view_of(*after, {});
-    if (shows_error(ending.outcome.code)) {
-        event(event_kind::printer_error, ending.job, ending.words);
-    }
-    switch (view.phase) {
-    case daemon::JobPhase::finished:
-        event(event_kind::job_finished, ending.job, "every record is printed", view.last_printed);
-        return;
-    case daemon::JobPhase::in_doubt:
-        event(event_kind::job_in_doubt, ending.job, ending.words, view.last_printed);
-        return;
-    default:
-        event(event_kind::job_stopped, ending.job, ending.words, view.last_printed);
-        return;
-    }
 }
 
 } // namespace linefeed::service

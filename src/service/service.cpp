@@ -64,7 +64,7 @@ Result<void> Service::recover() {
             }
             const JobPhase phase = phase_of(*facts, {});
             const bool finished = phase == JobPhase::finished;
-            if (!finished && ticket.begun) {
+            if (ticket.begun ? !finished : phase == JobPhase::queued) {
                 continue;
             }
             ticket.begun = !finished;
@@ -105,7 +105,12 @@ Result<Line::Past> Service::past_of(const config::PrinterSettings& printer) {
 
 void Service::open_lines() {
     const LineServices services{
-        {feed_, store_}, spool_, access_, events_, [this](const std::string& printer) { look_for_work(printer); }};
+        {feed_, store_},
+        spool_,
+        access_,
+        events_,
+        [this](const std::string& printer) { look_for_work(printer); },
+        [this](const std::string& printer, const FollowerWanted& wanted) { return claim_follower(printer, wanted); }};
     const SharedSettings now = settings();
     for (const config::PrinterSettings& printer : now->printers) {
         if (line(printer.name) != nullptr) {
@@ -207,8 +212,10 @@ Result<Service::LinePtr> Service::known_line(std::string_view printer) const {
 
 std::optional<JobPhase> Service::live_phase(spool::JobId id) const {
     for (const LinePtr& line : lines()) {
-        if (const auto active = line->active(); active && active->job == id) {
-            return active->phase;
+        for (const Line::Active& job : line->on_line()) {
+            if (job.job == id) {
+                return job.phase;
+            }
         }
     }
     return std::nullopt;

@@ -192,6 +192,12 @@ private:
     [[nodiscard]] Result<std::optional<spool::JobId>> next_by_itself(const std::string& printer);
     void hold_back(spool::JobId id, const Failure& why);
 
+    // service_chain.cpp: what follows without a stop
+    /// See LineServices::claim_follower.
+    [[nodiscard]] std::optional<JobFacts> claim_follower(const std::string& printer, const FollowerWanted& wanted);
+    [[nodiscard]] Result<std::optional<JobFacts>> next_to_follow(const std::string& printer,
+                                                                 const FollowerWanted& wanted);
+
     std::function<config::Checked<config::Settings>()> load_;
     std::function<Result<void>(const config::Settings&)> take_over_;
     std::string version_;

@@ -30,8 +30,8 @@ bool wanted(const daemon::JobFilter& filter, const JobView& view) {
 Result<std::vector<JobView>> Service::jobs(const daemon::JobFilter& filter) {
     std::map<spool::JobId, JobPhase> live;
     for (const LinePtr& line : lines()) {
-        if (const auto active = line->active()) {
-            live[active->job] = active->phase;
+        for (const Line::Active& job : line->on_line()) {
+            live[job.job] = job.phase;
         }
     }
     return access_.read([&](spool::Spool& spool) -> Result<std::vector<JobView>> {

@@ -16,11 +16,6 @@ using daemon::JobPhase;
 
 namespace {
 
-/// What stands on a job while it is printed, and so what is found if the service does not get to write more.
-constexpr const char* interrupted_words =
-    "the service ended while this job was on the line: what is in the printer may "
-    "still be printed; resume it to find out and to go on";
-
 Failure wrong(const std::string& message) {
     return {FailureKind::usage, message};
 }

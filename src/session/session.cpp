@@ -246,6 +246,12 @@ void Session::on_storage_failed(Instant now, Effects& out) {
     carry_out(actions, now, out);
 }
 
+void Session::on_follower_begun(RecordRange places, RecordNumber number, Instant now, Effects& out) {
+    Actions actions;
+    feeder_.on_follower_begun(places, number, actions);
+    carry_out(actions, now, out);
+}
+
 void Session::on_page(const RecordPage* page, Instant now, Effects& out) {
     pages_.add(page);
     if (end_) {

@@ -92,6 +92,8 @@ public:
     void on_durable(RecordNumber through, Instant now, Effects& out);
     void on_settled(Instant now, Effects& out);
     void on_storage_failed(Instant now, Effects& out);
+    void on_follower_known(RecordCount count) { feeder_.on_follower_known(count); }
+    void on_follower_begun(RecordRange places, RecordNumber number, Instant now, Effects& out);
     /// The next page, in order. It is lent until ReleasePage.
     void on_page(const RecordPage* page, Instant now, Effects& out);
     void request_stop(Instant now, Effects& out);

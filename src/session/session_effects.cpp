@@ -140,7 +140,9 @@ void Session::stage_records(RecordRange records, Instant now) {
 
 void Session::note_records(RecordRange records, std::string_view first, std::size_t bytes, Instant now) {
     if (observer_ != nullptr) {
-        observer_->on_records_sent(records, first, bytes, now);
+        const feeder::Numbering& numbering = feeder_.numbering(); // those of one job
+        const RecordRange numbers{numbering.number_of(records.first()), records.count()};
+        observer_->on_records_sent(numbers, first, bytes, now);
     }
     if (staged_records_) {
         staged_records_->records = RecordRange::closed(staged_records_->records.first(), records.last());

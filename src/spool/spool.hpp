@@ -119,10 +119,10 @@ public:
     [[nodiscard]] Result<std::optional<Ticket>> ticket(JobId job);
     /// The tickets in the queue of a printer, in order.
     [[nodiscard]] Result<std::vector<Ticket>> queue(const std::string& printer);
-    /// The first of them.
-    [[nodiscard]] Result<std::optional<Ticket>> first_in_queue(const std::string& printer);
-    /// Whether a job of that printer was begun and is not over.
-    [[nodiscard]] Result<bool> has_begun_job(const std::string& printer);
+    /// The first of them, `besides` left out.
+    [[nodiscard]] Result<std::optional<Ticket>> first_in_queue(const std::string& printer, JobId besides = {});
+    /// Whether a job of that printer other than `besides` was begun and is not over.
+    [[nodiscard]] Result<bool> has_begun_job(const std::string& printer, JobId besides = {});
     /// Of jobs that were begun and are not over, or that wait and have something in the ledger all the same: printed by
     /// one who writes no tickets. Oldest first.
     [[nodiscard]] Result<std::vector<Ticket>> begun_jobs();

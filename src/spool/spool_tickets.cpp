@@ -65,26 +65,27 @@ Result<std::vector<Ticket>> Spool::queue(const std::string& printer) {
     return read_tickets(statement->bind(1, printer));
 }
 
-Result<std::optional<Ticket>> Spool::first_in_queue(const std::string& printer) {
-    static const std::string sql =
-        std::string{select_tickets} + "WHERE printer = ?1 AND place IS NOT NULL ORDER BY place, job LIMIT 1";
+Result<std::optional<Ticket>> Spool::first_in_queue(const std::string& printer, JobId besides) {
+    static const std::string sql = std::string{select_tickets} + "WHERE printer = ?1 AND place IS NOT NULL AND "
+                                                                 "job <> ?2 ORDER BY place, job LIMIT 1";
     auto statement = state_->database->prepare(sql.c_str());
     if (!statement) {
         return statement.error();
     }
-    auto found = read_tickets(statement->bind(1, printer));
+    auto found = read_tickets(statement->bind(1, printer).bind(2, static_cast<std::int64_t>(besides)));
     if (!found) {
         return found.error();
     }
     return found->empty() ? std::optional<Ticket>{} : std::optional{std::move(found->front())};
 }
 
-Result<bool> Spool::has_begun_job(const std::string& printer) {
-    auto statement = state_->database->prepare("SELECT 1 FROM tickets WHERE printer = ?1 AND begun = 1 LIMIT 1");
+Result<bool> Spool::has_begun_job(const std::string& printer, JobId besides) {
+    auto statement =
+        state_->database->prepare("SELECT 1 FROM tickets WHERE printer = ?1 AND begun = 1 AND job <> ?2 LIMIT 1");
     if (!statement) {
         return statement.error();
     }
-    return statement->bind(1, printer).step();
+    return statement->bind(1, printer).bind(2, static_cast<std::int64_t>(besides)).step();
 }
 
 Result<std::vector<Ticket>> Spool::begun_jobs() {

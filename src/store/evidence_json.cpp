@@ -33,7 +33,7 @@ public:
         return scalar();
     }
     bool number_unsigned(std::uint64_t value) override {
-        take_number(key_, static_cast<std::uint32_t>(value));
+        take_number(key_, value);
         return scalar();
     }
     bool number_integer(std::int64_t /*value*/) override { return scalar(); }
@@ -54,7 +54,7 @@ public:
 
 private:
     virtual void take_text(std::string_view /*key*/, std::string& /*value*/) {}
-    virtual void take_number(std::string_view key, std::uint32_t value) = 0;
+    virtual void take_number(std::string_view key, std::uint64_t value) = 0;
     virtual void take_flag(std::string_view /*key*/, bool /*value*/) {}
 
     bool scalar() {
@@ -89,13 +89,18 @@ private:
             start_.serial_number = value;
         }
     }
-    void take_number(std::string_view key, std::uint32_t value) override {
+    void take_number(std::string_view key, std::uint64_t value) override {
         if (key == "total_before") {
-            start_.total_before = value;
+            start_.total_before = static_cast<std::uint32_t>(value);
         } else if (key == "last_printed_before") {
-            start_.last_printed_before = RecordNumber{value};
+            start_.last_printed_before = RecordNumber{static_cast<std::uint32_t>(value)};
+        } else if (key == "follows_job") {
+            followed().job = spool::JobId{static_cast<std::int64_t>(value)};
+        } else if (key == "follows_run") {
+            followed().run = spool::RunId{static_cast<std::int64_t>(value)};
         }
     }
+    FollowedRun& followed() { return start_.follows ? *start_.follows : start_.follows.emplace(); }
 
     RunStart start_;
     bool has_printer_ = false;
@@ -106,9 +111,9 @@ public:
     [[nodiscard]] const RunEnd& end() const { return end_; }
 
 private:
-    void take_number(std::string_view key, std::uint32_t value) override {
+    void take_number(std::string_view key, std::uint64_t value) override {
         if (key == "broken_off") {
-            end_.broken_off = RecordNumber{value};
+            end_.broken_off = RecordNumber{static_cast<std::uint32_t>(value)};
         }
     }
     void take_flag(std::string_view key, bool value) override {
@@ -120,7 +125,8 @@ private:
 
 } // namespace
 
-std::string run_start_json(const std::string& printer, const feeder::BeginRun& begin) {
+std::string run_start_json(const std::string& printer, const feeder::BeginRun& begin,
+                           const std::optional<FollowedRun>& follows) {
     JsonObject json;
     json.add("printer", printer);
     if (begin.printer.version) {
@@ -133,6 +139,10 @@ std::string run_start_json(const std::string& printer, const feeder::BeginRun& b
     }
     if (begin.printer.job_name) {
         json.add("job", *begin.printer.job_name);
+    }
+    if (follows) {
+        json.add("follows_job", static_cast<std::int64_t>(follows->job))
+            .add("follows_run", static_cast<std::int64_t>(follows->run));
     }
     return json.add("last_printed_before", begin.last_printed_before.value()).text();
 }

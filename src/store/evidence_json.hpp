@@ -4,11 +4,20 @@
 
 #include "feeder/actions.hpp"
 #include "feeder/reconcile.hpp"
+#include "spool/job.hpp"
 
 #include <optional>
 #include <string>
 
 namespace linefeed::store {
+
+/// The run that another follows without a stop.
+struct FollowedRun {
+    spool::JobId job{};
+    spool::RunId run{};
+
+    friend bool operator==(const FollowedRun&, const FollowedRun&) = default;
+};
 
 /// What a run_started row remembers of the printer: enough to reconcile after a crash.
 struct RunStart {
@@ -16,6 +25,7 @@ struct RunStart {
     std::string serial_number;
     std::optional<std::uint32_t> total_before;
     RecordNumber last_printed_before;
+    std::optional<FollowedRun> follows{}; ///< then the first record has gone out with number 0
 
     friend bool operator==(const RunStart&, const RunStart&) = default;
 };
@@ -28,7 +38,8 @@ struct RunEnd {
     friend bool operator==(const RunEnd&, const RunEnd&) = default;
 };
 
-[[nodiscard]] std::string run_start_json(const std::string& printer, const feeder::BeginRun& begin);
+[[nodiscard]] std::string run_start_json(const std::string& printer, const feeder::BeginRun& begin,
+                                         const std::optional<FollowedRun>& follows = {});
 /// std::nullopt if the text is not what run_start_json() wrote.
 [[nodiscard]] std::optional<RunStart> parse_run_start(const std::string& json);
 /// {"sm":[depth,entries,last,stop,finished]}

@@ -1,7 +1,5 @@
 #include "store/ledger_keeper.hpp"
 
-#include "store/evidence_json.hpp"
-
 #include <algorithm>
 
 namespace linefeed::store {
@@ -23,70 +21,19 @@ RecordRange behind(RecordRange range, RecordNumber last) {
     return RecordRange::closed(std::max(range.first(), last.next()), range.last());
 }
 
-/// `range` without its part behind `last`, which is not before its first record.
-RecordRange up_to(RecordRange range, RecordNumber last) {
-    return RecordRange::closed(range.first(), std::min(range.last(), last));
-}
-
 } // namespace
 
-Result<std::optional<OpenIssue>> find_open_issue(spool::Spool& spool, spool::JobId job) {
-    const auto state = spool.ledger_state(job);
-    if (!state) {
-        return state.error();
-    }
-    const std::vector<RecordRange> open = state->ranges(RecordState::open);
-    if (open.empty()) {
-        return std::optional<OpenIssue>{};
-    }
-    const auto last_run = spool.last_run(job);
-    if (!last_run) {
-        return last_run.error();
-    }
-    // A run issues in ascending order and none begins before the last is settled, so what is open is one stretch of the
-    // last run.
-    LINEFEED_ASSERT(open.size() == 1 && last_run->has_value());
-    const spool::LedgerRow& started = (*last_run)->started;
-    const auto start = parse_run_start(started.entry.evidence);
-    if (!start) {
-        return Failure{FailureKind::storage, "the print ledger is damaged: the start of run " +
-                                                 std::to_string(static_cast<std::int64_t>(started.entry.run)) +
-                                                 " cannot be read"};
-    }
-    OpenIssue issue;
-    issue.job = job;
-    issue.run = started.entry.run;
-    issue.records = open.front();
-    issue.run_range = started.entry.range;
-    issue.printer = start->printer;
-    issue.facts = {started.entry.range.first(), issue.records.first().previous(),
-                   issue.records.last(),        start->serial_number,
-                   start->total_before,         start->last_printed_before};
-    const auto stored_job = spool.job(job);
-    if (!stored_job) {
-        return stored_job.error();
-    }
-    LINEFEED_ASSERT(stored_job->has_value());                    // a job that stands in the ledger stays
-    if ((*stored_job)->state != spool::ImportState::importing) { // the run may have begun before the end was known
-        issue.run_range = up_to(issue.run_range, (*stored_job)->records.last());
-    }
-    issue.facts.last = issue.run_range.last();
-    if (const auto& ended = (*last_run)->ended) {
-        const RunEnd end = parse_run_end(ended->entry.evidence).value_or(RunEnd{});
-        issue.facts.broken_off = issue.records.contains(end.broken_off) ? end.broken_off : RecordNumber{};
-        issue.facts.unclear = end.unclear;
-    }
-    return std::optional<OpenIssue>{issue};
+feeder::Settle in_job(const feeder::Settle& settle, const JobPlaces& places) {
+    feeder::Settle own = settle;
+    own.verdict.printed = places.records(settle.verdict.printed);
+    own.verdict.in_doubt = places.records(settle.verdict.in_doubt);
+    own.verdict.unused = places.records(settle.verdict.unused);
+    return own;
 }
 
-feeder::FeederPlan make_plan(const std::optional<OpenIssue>& open, spool::JobId job, RecordRange wanted) {
-    feeder::FeederPlan plan;
-    if (open) {
-        plan.open = open->facts;
-        plan.doubt_blocks = open->job == job;
-        plan.take_over = open->job == job && !wanted.empty() && open->run_range.last() == wanted.last();
-    }
-    return plan;
+Result<void> append_all(spool::Spool& spool, std::vector<spool::JobRows> rows) {
+    std::erase_if(rows, [](const spool::JobRows& job) { return job.entries.empty(); });
+    return rows.empty() ? Result<void>{} : spool.append_together(rows);
 }
 
 LedgerKeeper::LedgerKeeper(spool::Spool& spool, spool::JobId job, RecordRange wanted, std::string printer,
@@ -97,16 +44,16 @@ LedgerKeeper::LedgerKeeper(spool::Spool& spool, spool::JobId job, RecordRange wa
     , printer_(std::move(printer))
     , open_(std::move(open)) {}
 
-Result<void> LedgerKeeper::append_verdict(spool::JobId job, spool::RunId run, const feeder::Settle& settle) {
+Result<spool::JobRows> LedgerKeeper::verdict_rows(spool::JobId job, spool::RunId run, const feeder::Settle& settle) {
     const auto state = spool_.ledger_state(job);
     if (!state) {
         return state.error();
     }
     const std::string evidence = settle_json(settle);
-    std::vector<LedgerEntry> entries;
+    spool::JobRows rows{job, {}};
     const auto add = [&](LedgerKind kind, RecordRange range) {
         if (!range.empty()) {
-            entries.push_back({kind, run, range, evidence});
+            rows.entries.push_back({kind, run, range, evidence});
         }
     };
     add(LedgerKind::printed, settle.verdict.printed);
@@ -120,15 +67,31 @@ Result<void> LedgerKeeper::append_verdict(spool::JobId job, spool::RunId run, co
         }
         add(LedgerKind::unused, open);
     }
-    return entries.empty() ? Result<void>{} : spool_.append(job, entries);
+    return rows;
+}
+
+Result<spool::JobRows> LedgerKeeper::verdict_rows(const feeder::Settle& settle) {
+    LINEFEED_ASSERT(!has_pending());
+    if (!settle.verdict.printed.empty()) {
+        printed_through_ = settle.verdict.printed.last();
+    }
+    return verdict_rows(job_, *run_, settle);
 }
 
 Result<void> LedgerKeeper::settle_earlier(const feeder::Settle& settle) {
     LINEFEED_ASSERT(open_.has_value());
-    return append_verdict(open_->job, open_->run, settle);
+    std::vector<spool::JobRows> rows;
+    for (const OpenJob& open : open_->jobs) {
+        auto own = verdict_rows(open.job, open.run, in_job(settle, open.places));
+        if (!own) {
+            return own.error();
+        }
+        rows.push_back(std::move(*own));
+    }
+    return append_all(spool_, std::move(rows));
 }
 
-Result<LedgerKeeper::Grant> LedgerKeeper::grant(const feeder::BeginRun& begin) {
+Result<LedgerKeeper::Grant> LedgerKeeper::grant(const feeder::BeginRun& begun) {
     const auto state = spool_.ledger_state(job_);
     if (!state) {
         return state.error();
@@ -143,12 +106,9 @@ Result<LedgerKeeper::Grant> LedgerKeeper::grant(const feeder::BeginRun& begin) {
         grant.range = {};
         return grant;
     }
-    const auto run = spool_.begin_run(job_, grant.range, run_start_json(printer_, begin));
-    if (!run) {
-        return run.error();
+    if (const auto done = begin(grant.range, run_start_json(printer_, begun, {})); !done) {
+        return done.error();
     }
-    run_ = *run;
-    intent_wanted_ = intent_through_ = printed_through_ = grant.range.first().previous();
     intent(intent_through_ + std::min(grant.range.count(), RecordCount{first_intents}));
     if (const auto committed = commit(); !committed) {
         return committed.error();
@@ -157,20 +117,48 @@ Result<LedgerKeeper::Grant> LedgerKeeper::grant(const feeder::BeginRun& begin) {
     return grant;
 }
 
+Result<void> LedgerKeeper::begin(RecordRange range, const std::string& evidence) {
+    const auto run = spool_.begin_run(job_, range, evidence);
+    if (!run) {
+        return run.error();
+    }
+    run_ = *run;
+    intent_wanted_ = intent_through_ = printed_through_ = range.first().previous();
+    return {};
+}
+
+Result<std::optional<LedgerKeeper>> LedgerKeeper::begin_follower(const feeder::BeginRun& begun, spool::JobId job,
+                                                                 RecordRange records) const {
+    const auto state = spool_.ledger_state(job);
+    if (!state) {
+        return state.error();
+    }
+    if (!state->segments().empty()) {
+        return std::optional<LedgerKeeper>{};
+    }
+    LedgerKeeper follower{spool_, job, records, printer_, std::nullopt};
+    const std::string evidence = run_start_json(printer_, begun, FollowedRun{job_, *run_});
+    if (const auto done = follower.begin(records, evidence); !done) {
+        return done.error();
+    }
+    return std::optional<LedgerKeeper>{std::move(follower)};
+}
+
 Result<LedgerKeeper::Grant> LedgerKeeper::adopt(const feeder::AdoptRun& adopted) {
     LINEFEED_ASSERT(make_plan(open_, job_, wanted_).take_over);
-    run_ = open_->run;
+    const OpenJob& open = open_->jobs.front();
+    run_ = open.run;
     intent_wanted_ = intent_through_ = open_->facts.issued_through;
     printed_through_ = open_->facts.printed_through;
     printed(adopted.printed_through, adopted.evidence);
     if (const auto committed = commit(); !committed) {
         return committed.error();
     }
-    return Grant{known_part(open_->run_range), intent_through_, false};
+    return Grant{known_part(open.run_range), intent_through_, false};
 }
 
 RecordRange LedgerKeeper::known_part(RecordRange range) const {
-    return end_ ? up_to(range, *end_) : range;
+    return end_ ? RecordRange::closed(range.first(), std::min(range.last(), *end_)) : range;
 }
 
 void LedgerKeeper::imported(RecordNumber through) {
@@ -232,39 +220,41 @@ Result<void> LedgerKeeper::commit() {
     return entries.empty() ? Result<void>{} : spool_.append(job_, entries);
 }
 
-Result<void> LedgerKeeper::settle(const feeder::Settle& settle) {
-    printed(settle.confirmed_through, settle.evidence.mail);
-    intent_wanted_ = intent_through_; // nothing more goes out
-    if (const auto committed = commit(); !committed) {
-        return committed;
-    }
-    if (!settle.verdict.printed.empty()) {
-        printed_through_ = settle.verdict.printed.last();
-    }
-    return append_verdict(job_, *run_, settle);
+RecordNumber LedgerKeeper::durably_printed() const {
+    return pending_printed_.empty() ? printed_through_ : pending_printed_.first().previous();
+}
+
+void LedgerKeeper::confirm(RecordNumber through, const protocol::MailStatus& evidence) {
+    printed(through, evidence);
+    intent_wanted_ = intent_through_;
 }
 
 /// No run has begun, but it was seen that a print of the earlier one may be broken off, or that nobody knows its
 /// records.
-Result<void> LedgerKeeper::finish_earlier(const feeder::Outcome& outcome) {
+std::vector<spool::JobRows> LedgerKeeper::rows_about_earlier(const feeder::Outcome& outcome) const {
+    std::vector<spool::JobRows> rows;
     if (!open_) {
-        return {};
+        return rows;
     }
     const bool broken_off = outcome.broken_off != RecordNumber{} && outcome.broken_off != open_->facts.broken_off;
     const bool unclear = outcome.unclear && !open_->facts.unclear;
     if (!broken_off && !unclear) {
-        return {};
+        return rows;
     }
-    const LedgerEntry ended{LedgerKind::run_ended, open_->run, {}, outcome_json(outcome)};
-    return spool_.append(open_->job, {&ended, 1});
+    for (const OpenJob& open : open_->jobs) {
+        feeder::Outcome own = outcome;
+        own.broken_off = open.places.record_at(outcome.broken_off);
+        rows.push_back({open.job, {{LedgerKind::run_ended, open.run, {}, outcome_json(own)}}});
+    }
+    return rows;
 }
 
-Result<void> LedgerKeeper::finish(const feeder::Outcome& outcome) {
+Result<std::vector<spool::JobRows>> LedgerKeeper::end_rows(const feeder::Outcome& outcome) {
     if (!run_) {
-        return finish_earlier(outcome);
+        return rows_about_earlier(outcome);
     }
     if (const auto committed = commit(); !committed) {
-        return committed;
+        return committed.error();
     }
     std::vector<LedgerEntry> entries;
     if (!outcome.issued) { // granted, and surely not in the printer
@@ -277,7 +267,17 @@ Result<void> LedgerKeeper::finish(const feeder::Outcome& outcome) {
         }
     }
     entries.push_back({LedgerKind::run_ended, *run_, {}, outcome_json(outcome)});
-    return spool_.append(job_, entries);
+    std::vector<spool::JobRows> rows;
+    rows.push_back({job_, std::move(entries)});
+    return rows;
+}
+
+Result<void> LedgerKeeper::finish(const feeder::Outcome& outcome) {
+    auto rows = end_rows(outcome);
+    if (!rows) {
+        return rows.error();
+    }
+    return append_all(spool_, std::move(*rows));
 }
 
 } // namespace linefeed::store

@@ -1,12 +1,13 @@
-// Translates between the feeder's view of a run and the rows of the print ledger: which records may be granted, which
-// rows a verdict becomes, and what an earlier run has left open. Pure bookkeeping over the spool; called on the store's
-// thread only.
+// Translates between what becomes of the records of one job in one run and the rows of the print ledger: which records
+// may be granted, and which rows a verdict becomes. It knows them by their numbers. Pure bookkeeping over the spool;
+// called on the store's thread only.
 #pragma once
 
 #include "base/failure.hpp"
 #include "feeder/actions.hpp"
-#include "feeder/feeder.hpp"
 #include "spool/spool.hpp"
+#include "store/evidence_json.hpp"
+#include "store/open_issue.hpp"
 
 #include <optional>
 #include <string>
@@ -14,25 +15,14 @@
 
 namespace linefeed::store {
 
-/// Records issued by an earlier run whose fate is not known, and who issued them.
-struct OpenIssue {
-    spool::JobId job{};
-    spool::RunId run{};
-    RecordRange records;
-    RecordRange run_range; ///< what the run meant to print
-    feeder::OpenRun facts;
-    std::string printer; ///< address of the printer that may hold them
-};
+/// What the verdict says of the records of one job, by their numbers.
+[[nodiscard]] feeder::Settle in_job(const feeder::Settle& settle, const JobPlaces& places);
 
-/// What the job's last run left open; absent if every issued record's fate is known.
-[[nodiscard]] Result<std::optional<OpenIssue>> find_open_issue(spool::Spool& spool, spool::JobId job);
-
-/// What the feeder has to know of the open records before it prints `wanted` of `job`. The earlier run may be gone on
-/// with if it is of this job and ends where the operator wants it to end.
-[[nodiscard]] feeder::FeederPlan make_plan(const std::optional<OpenIssue>& open, spool::JobId job, RecordRange wanted);
+/// Appends rows of several jobs in one transaction, if there are any; durable at return.
+[[nodiscard]] Result<void> append_all(spool::Spool& spool, std::vector<spool::JobRows> rows);
 
 /// One job's ledger during one run. Flow: construct, settle_earlier() and grant() as the feeder asks, then intent(),
-/// printed(), and at the end settle() and finish().
+/// printed(), and at the end confirm(), commit(), verdict_rows(), and finish().
 class LedgerKeeper {
 public:
     /// `wanted` = the records the operator asked for.
@@ -49,6 +39,10 @@ public:
     };
     /// Begins the run over the next printable records, with the first intents, durable at return.
     [[nodiscard]] Result<Grant> grant(const feeder::BeginRun& begin);
+    /// The same for `job`, none of which is issued, behind this run and without intents. Absent: its records cannot be
+    /// printed as a whole.
+    [[nodiscard]] Result<std::optional<LedgerKeeper>> begin_follower(const feeder::BeginRun& begin, spool::JobId job,
+                                                                     RecordRange records) const;
 
     /// Goes on with the earlier run, found still printing: its records stay issued, those behind `sent_through` may be
     /// sent. Precondition: FeederPlan::take_over of make_plan().
@@ -69,16 +63,25 @@ public:
     /// Writes what is pending in one transaction, durable at return.
     [[nodiscard]] Result<void> commit();
 
-    /// The verdict over this run becomes rows: what is neither printed nor in doubt is unused, durable at return.
-    [[nodiscard]] Result<void> settle(const feeder::Settle& settle);
-    /// The run is over.
+    /// Nothing more of the run goes out, and records up to this one were confirmed before its verdict.
+    void confirm(RecordNumber through, const protocol::MailStatus& evidence);
+    /// The verdict over this run as rows: what is neither printed nor in doubt is unused. Precondition: nothing is
+    /// pending.
+    [[nodiscard]] Result<spool::JobRows> verdict_rows(const feeder::Settle& settle);
+    /// The run is over: writes what is pending, and what else there is to write behind it, of all jobs it is about.
+    [[nodiscard]] Result<std::vector<spool::JobRows>> end_rows(const feeder::Outcome& outcome);
+    /// The same, and writes those.
     [[nodiscard]] Result<void> finish(const feeder::Outcome& outcome);
 
+    [[nodiscard]] spool::JobId job() const { return job_; }
     [[nodiscard]] RecordNumber intent_through() const { return intent_through_; }
+    /// As written.
+    [[nodiscard]] RecordNumber durably_printed() const;
 
 private:
-    [[nodiscard]] Result<void> append_verdict(spool::JobId job, spool::RunId run, const feeder::Settle& settle);
-    [[nodiscard]] Result<void> finish_earlier(const feeder::Outcome& outcome);
+    [[nodiscard]] Result<void> begin(RecordRange range, const std::string& evidence);
+    [[nodiscard]] Result<spool::JobRows> verdict_rows(spool::JobId job, spool::RunId run, const feeder::Settle& settle);
+    [[nodiscard]] std::vector<spool::JobRows> rows_about_earlier(const feeder::Outcome& outcome) const;
     [[nodiscard]] RecordRange known_part(RecordRange range) const;
 
     spool::Spool& spool_;

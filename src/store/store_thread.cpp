@@ -117,7 +117,7 @@ bool StoreThread::commit_together() {
     try {
         std::vector<spool::JobRows> rows;
         for (const Store* store : writers_) {
-            rows.push_back(store->work().pending_rows());
+            std::ranges::move(store->work().pending_rows(), std::back_inserter(rows));
         }
         if (!spool_.append_together(rows)) {
             return false;

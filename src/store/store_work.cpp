@@ -1,5 +1,8 @@
 #include "store/store_work.hpp"
 
+#include <algorithm>
+#include <iterator>
+#include <string_view>
 #include <utility>
 
 namespace linefeed::store {
@@ -25,6 +28,23 @@ void append(RecordPage& page, const RecordPage& more) {
     page.frames += more.frames;
 }
 
+/// nullptr = all is read.
+template <typename Parts>
+auto* next_to_read(Parts& parts) {
+    const auto part = std::ranges::find_if(parts, [](const auto& any) { return !any.to_read.empty(); });
+    return part == parts.end() ? nullptr : &*part;
+}
+
+/// The number of the first record becomes 0: `^0=MR` and the number, up to the first TAB.
+void begin_with_zero(RecordPage& page) {
+    constexpr std::size_t digits_at = std::string_view{"^0=MR"}.size();
+    const std::size_t digits = page.frames.find('\t') - digits_at;
+    page.frames.replace(digits_at, digits, "0");
+    for (std::uint32_t& end : page.ends) {
+        end -= static_cast<std::uint32_t>(digits - 1);
+    }
+}
+
 } // namespace
 
 void deliver(const StoreReply& reply, session::Session& session, Instant now, session::Effects& effects) {
@@ -39,15 +59,16 @@ void deliver(const StoreReply& reply, session::Session& session, Instant now, se
             [&](const Settled&) { session.on_settled(now, effects); },
             [&](const PageReady& ready) { session.on_page(ready.page, now, effects); },
             [&](const StorageFailed&) { session.on_storage_failed(now, effects); },
+            [&](const FollowerKnown& known) { session.on_follower_known(known.count); },
+            [&](const FollowerBegun& begun) { session.on_follower_begun(begun.places, begun.number, now, effects); },
         },
         reply);
 }
 
-StoreWork::StoreWork(spool::Spool& spool, spool::JobId job, LedgerKeeper keeper, Supply* supply)
+StoreWork::StoreWork(spool::Spool& spool, LedgerKeeper keeper, Supply* supply)
     : spool_(spool)
-    , job_(job)
-    , keeper_(std::move(keeper))
     , supply_(supply) {
+    parts_.push_back({std::move(keeper)});
     if (supply_ != nullptr) {
         take_supply();
         replies_.clear(); // nothing has begun that could end
@@ -68,7 +89,7 @@ void StoreWork::take(const StoreRequest& request) {
                    },
                    [&](const feeder::BeginRun& begin) {
                        if (writable) {
-                           grant(begin);
+                           begin.follower ? begin_follower(begin) : grant(begin);
                        }
                    },
                    [&](const feeder::AdoptRun& adopted) {
@@ -76,8 +97,12 @@ void StoreWork::take(const StoreRequest& request) {
                            adopt(adopted);
                        }
                    },
-                   [&](const feeder::AskIntent& intent) { keeper_.intent(intent.through); },
-                   [&](const feeder::ConfirmPrinted& confirm) { keeper_.printed(confirm.through, confirm.evidence); },
+                   [&](const feeder::AskIntent& intent) {
+                       intent_wanted_ = std::max(intent_wanted_, intent.through);
+                       extend_intents();
+                   },
+                   [&](const feeder::ConfirmPrinted& printed) { confirm(printed.through, printed.evidence); },
+                   [&](const OfferFollower& follower) { offer(follower); },
                },
                request);
 }
@@ -87,8 +112,39 @@ void StoreWork::take_page_back(const RecordPage* page) {
 }
 
 void StoreWork::settle(const feeder::Settle& verdict) {
-    const auto done = verdict.earlier_run ? keeper_.settle_earlier(verdict) : keeper_.settle(verdict);
-    if (!done) {
+    if (!verdict.earlier_run) {
+        settle_parts(verdict);
+        return;
+    }
+    if (const auto done = parts_.front().keeper.settle_earlier(verdict); !done) {
+        fail(done.error());
+    } else {
+        replies_.emplace_back(Settled{});
+    }
+}
+
+/// Of both jobs in one transaction: what one says of the other's records must not be lost in between.
+void StoreWork::settle_parts(const feeder::Settle& verdict) {
+    intent_wanted_ = intent_through(); // nothing more goes out
+    for (Part& part : parts_) {
+        part.keeper.confirm(part.places.through(verdict.confirmed_through), verdict.evidence.mail);
+    }
+    if (wants_commit()) {
+        commit();
+    }
+    std::vector<spool::JobRows> rows;
+    for (auto part = parts_.begin(); part != parts_.end() && failure_.empty(); ++part) {
+        auto own = part->keeper.verdict_rows(in_job(verdict, part->places));
+        if (own) {
+            rows.push_back(std::move(*own));
+        } else {
+            fail(own.error());
+        }
+    }
+    if (!failure_.empty()) {
+        return;
+    }
+    if (const auto done = append_all(spool_, std::move(rows)); !done) {
         fail(done.error());
     } else {
         replies_.emplace_back(Settled{});
@@ -96,7 +152,7 @@ void StoreWork::settle(const feeder::Settle& verdict) {
 }
 
 void StoreWork::grant(const feeder::BeginRun& begin) {
-    const auto grant = keeper_.grant(begin);
+    const auto grant = parts_.front().keeper.grant(begin);
     if (!grant) {
         fail(grant.error());
     } else if (grant->range.empty()) {
@@ -104,69 +160,189 @@ void StoreWork::grant(const feeder::BeginRun& begin) {
         replies_.emplace_back(
             Refused{in_doubt ? feeder::OutcomeCode::records_in_doubt : feeder::OutcomeCode::nothing_to_print});
     } else {
-        to_read_ = grant->range;
-        durable_reported_ = grant->durable_through;
-        replies_.emplace_back(Granted{grant->range, grant->durable_through});
+        go_on(*grant, grant->range.first().previous());
     }
 }
 
 void StoreWork::adopt(const feeder::AdoptRun& adopted) {
-    const auto grant = keeper_.adopt(adopted);
+    LedgerKeeper& keeper = parts_.front().keeper;
+    const auto grant = keeper.adopt(adopted);
     if (!grant) {
         fail(grant.error());
         return;
     }
-    to_read_ = adopted.sent_through == grant->range.last()
-                   ? RecordRange{}
-                   : RecordRange::closed(adopted.sent_through.next(), grant->range.last());
-    durable_reported_ = grant->durable_through;
-    replies_.emplace_back(Granted{grant->range, grant->durable_through});
+    go_on(*grant, adopted.sent_through);
 }
 
+void StoreWork::go_on(const LedgerKeeper::Grant& grant, RecordNumber read_behind) {
+    Part& part = parts_.front();
+    part.places = {grant.range.first(), grant.range.first(), grant.range.last()};
+    part.to_read =
+        read_behind == grant.range.last() ? RecordRange{} : RecordRange::closed(read_behind.next(), grant.range.last());
+    intent_wanted_ = durable_reported_ = grant.durable_through;
+    replies_.emplace_back(Granted{grant.range, grant.durable_through});
+}
+
+void StoreWork::offer(const OfferFollower& follower) {
+    if (supply_ == nullptr && !follower.records.empty()) {
+        follower_ = follower;
+        replies_.emplace_back(FollowerKnown{follower.records.count()});
+    }
+}
+
+/// Nothing may be left of the job behind this run. Of the job before it, the printer reports neither 0 nor another
+/// number any more.
+bool StoreWork::may_be_followed(const Part& part, RecordRange records) const {
+    return records.last() == part.places.through(part.places.last) &&
+           part.keeper.durably_printed() > part.places.number;
+}
+
+/// Nothing comes of it where the job may not be followed, or the ledger knows the follower already: then the line stops
+/// in between.
+void StoreWork::begin_follower(const feeder::BeginRun& begin) {
+    if (wants_commit()) {
+        commit();
+    }
+    if (!failure_.empty() || !follower_ || parts_.size() > 1) {
+        return;
+    }
+    const Part& before = parts_.front();
+    const OfferFollower follower = *std::exchange(follower_, std::nullopt);
+    const auto job = spool_.job(before.keeper.job());
+    if (!job) {
+        fail(job.error());
+        return;
+    }
+    if (!may_be_followed(before, (*job)->records)) {
+        return;
+    }
+    auto keeper = before.keeper.begin_follower(begin, follower.job, follower.records);
+    if (!keeper) {
+        fail(keeper.error());
+    } else if (*keeper) {
+        const RecordNumber first = before.places.last.next();
+        const RecordNumber number = follower.records.first();
+        const RecordRange places{first, follower.records.count()};
+        parts_.push_back({std::move(**keeper), {first, number, places.last()}, true, follower.records});
+        numbering_.append(first, number);
+        replies_.emplace_back(FollowerBegun{places, number});
+    }
+}
+
+/// A follower's records only as far as each number tells which job it belongs to.
+void StoreWork::extend_intents() {
+    const Part& printed = parts_.front();
+    const RecordNumber distinct =
+        parts_.size() == 1 ? RecordNumber::max()
+                           : numbering_.distinct_through(printed.places.place_of(printed.keeper.durably_printed()));
+    for (Part& part : parts_) {
+        if (const RecordNumber through = std::min(intent_wanted_, distinct); through >= part.places.first) {
+            part.keeper.intent(part.places.through(through));
+        }
+    }
+}
+
+void StoreWork::confirm(RecordNumber through, const protocol::MailStatus& evidence) {
+    for (Part& part : parts_) {
+        if (through >= part.places.first) {
+            part.keeper.printed(part.places.through(through), evidence);
+        }
+    }
+}
+
+/// The ledger knows of the first print of the follower, so the printer reports no record of the job any more.
+void StoreWork::leave_printed_job() {
+    if (parts_.size() == 1 || parts_.back().keeper.durably_printed() < parts_.back().places.number) {
+        return;
+    }
+    Part& printed = parts_.front();
+    if (const auto finished = printed.keeper.finish({.code = feeder::OutcomeCode::finished}); !finished) {
+        fail(finished.error());
+        return;
+    }
+    parts_.pop_front();
+    numbering_.forget_before(parts_.front().places.first);
+}
+
+/// Of both jobs in one transaction, as they are settled.
 void StoreWork::end(const feeder::End& end) {
     ended_ = true;
+    std::vector<spool::JobRows> rows;
+    for (auto part = parts_.begin(); part != parts_.end() && failure_.empty(); ++part) {
+        feeder::Outcome own = end.outcome;
+        own.broken_off = part->places.record_at(end.outcome.broken_off);
+        auto last = part->keeper.end_rows(own);
+        if (last) {
+            std::ranges::move(*last, std::back_inserter(rows));
+        } else {
+            fail(last.error());
+        }
+    }
     if (failure_.empty()) {
-        if (const auto finished = keeper_.finish(end.outcome); !finished) {
-            fail(finished.error());
+        if (const auto written = append_all(spool_, std::move(rows)); !written) {
+            fail(written.error());
         }
     }
 }
 
 bool StoreWork::wants_commit() const {
-    return failure_.empty() && !ended_ && keeper_.has_pending();
+    const auto has_pending = [](const Part& part) { return part.keeper.has_pending(); };
+    return failure_.empty() && !ended_ && std::ranges::any_of(parts_, has_pending);
 }
 
 bool StoreWork::intent_waits() const {
-    return wants_commit() && keeper_.intent_through() > durable_reported_;
+    return wants_commit() && intent_through() > durable_reported_;
 }
 
 void StoreWork::commit() {
     LINEFEED_ASSERT(failure_.empty());
-    if (const auto committed = keeper_.commit(); !committed) {
-        fail(committed.error());
+    if (const auto written = append_all(spool_, pending_rows()); !written) {
+        fail(written.error());
         return;
     }
-    report_durable();
+    rows_written();
+}
+
+std::vector<spool::JobRows> StoreWork::pending_rows() const {
+    std::vector<spool::JobRows> rows;
+    for (const Part& part : parts_) {
+        if (part.keeper.has_pending()) {
+            rows.push_back({part.keeper.job(), part.keeper.pending_rows()});
+        }
+    }
+    return rows;
 }
 
 void StoreWork::rows_written() {
-    keeper_.rows_written();
+    for (Part& part : parts_) {
+        part.keeper.rows_written();
+    }
     report_durable();
+    leave_printed_job();
+    extend_intents();
+}
+
+/// Place.
+RecordNumber StoreWork::intent_through() const {
+    const Part& last = parts_.back();
+    const bool begun = last.keeper.intent_through() >= last.places.number;
+    const Part& reached = begun ? last : parts_.front();
+    return reached.places.place_of(reached.keeper.intent_through());
 }
 
 void StoreWork::report_durable() {
-    if (keeper_.intent_through() > durable_reported_) {
-        durable_reported_ = keeper_.intent_through();
+    if (intent_through() > durable_reported_) {
+        durable_reported_ = intent_through();
         replies_.emplace_back(Durable{durable_reported_});
     }
 }
 
-/// What can be read of to_read_ now.
-RecordRange StoreWork::readable() const {
-    if (supply_ == nullptr || to_read_.empty()) {
-        return to_read_;
+/// What can be read of it now.
+RecordRange StoreWork::readable(const Part& part) const {
+    if (supply_ == nullptr) {
+        return part.to_read;
     }
-    return RecordRange::closed(to_read_.first(), std::min(to_read_.last(), supply_->durable().last()));
+    return RecordRange::closed(part.to_read.first(), std::min(part.to_read.last(), supply_->durable().last()));
 }
 
 /// A slow source makes small pages. So that those lent hold a first fill for sure, half of them are kept for pages that
@@ -175,17 +351,19 @@ bool StoreWork::wants_read_ahead() const {
     if (!failure_.empty() || ended_ || lent_.size() >= session::max_pages) {
         return false;
     }
-    const RecordRange next = readable();
-    const bool rest = next == to_read_;
+    const auto* const part = next_to_read(parts_);
+    const RecordRange next = part != nullptr ? readable(*part) : RecordRange{};
+    const bool rest = part != nullptr && next == part->to_read;
     return !next.empty() && (rest || lent_.size() < session::max_pages / 2 || next.count() >= worthwhile_records);
 }
 
 void StoreWork::read_ahead() {
-    const RecordRange next = readable();
-    auto page = spool_.read_page(job_, next.first());
+    Part& part = *next_to_read(parts_);
+    const RecordRange next = readable(part);
+    auto page = spool_.read_page(part.keeper.job(), next.first());
     while (page && page->range().count() < worthwhile_records && page->frames.size() < worthwhile_bytes &&
            page->range().last() < next.last()) {
-        const auto more = spool_.read_page(job_, page->range().last().next());
+        const auto more = spool_.read_page(part.keeper.job(), page->range().last().next());
         if (!more) {
             page = more.error();
             break;
@@ -197,7 +375,11 @@ void StoreWork::read_ahead() {
         return;
     }
     const RecordNumber last = page->range().last();
-    to_read_ = last >= to_read_.last() ? RecordRange{} : RecordRange::closed(last.next(), to_read_.last());
+    part.to_read = last >= part.to_read.last() ? RecordRange{} : RecordRange::closed(last.next(), part.to_read.last());
+    if (part.follows && page->first == part.places.number) {
+        begin_with_zero(*page);
+    }
+    page->first = part.places.place_of(page->first);
     lent_.push_back(std::make_unique<RecordPage>(std::move(*page)));
     replies_.emplace_back(PageReady{lent_.back().get()});
 }
@@ -213,12 +395,13 @@ void StoreWork::supply_step() {
 
 void StoreWork::take_supply() {
     const RecordRange there = supply_->durable();
-    keeper_.imported(there.last());
+    Part& part = parts_.front();
+    part.keeper.imported(there.last());
     if (supply_->end_known()) {
         supply_over_ = true;
-        keeper_.end_at(there.last());
-        if (!to_read_.empty()) {
-            to_read_ = RecordRange::closed(to_read_.first(), std::min(to_read_.last(), there.last()));
+        part.keeper.end_at(there.last());
+        if (!part.to_read.empty()) {
+            part.to_read = RecordRange::closed(part.to_read.first(), std::min(part.to_read.last(), there.last()));
         }
         replies_.emplace_back(EndKnown{there.last()});
     } else if (supply_->failure()) {

@@ -17,12 +17,17 @@
 
 namespace linefeed::store {
 
-/// Feed thread → store: the feeder's ledger actions, and pages that are not needed any more.
+/// Feed thread → store: the feeder's ledger actions, pages that are not needed any more, and the job that may follow
+/// without a stop.
 struct PageReturned {
     const RecordPage* page = nullptr;
 };
+struct OfferFollower {
+    spool::JobId job{};
+    RecordRange records; ///< all of the job
+};
 using StoreRequest = std::variant<std::monostate, feeder::Settle, feeder::BeginRun, feeder::AdoptRun, feeder::AskIntent,
-                                  feeder::ConfirmPrinted, feeder::End, PageReturned>;
+                                  feeder::ConfirmPrinted, feeder::End, PageReturned, OfferFollower>;
 
 /// Store → feed thread.
 struct Granted {
@@ -46,18 +51,28 @@ struct PageReady {
     const RecordPage* page = nullptr;
 };
 struct StorageFailed {};
-using StoreReply =
-    std::variant<std::monostate, Granted, Refused, Durable, EndKnown, SupplyFailed, Settled, PageReady, StorageFailed>;
+/// See session::Session::on_follower_known(), on_follower_begun().
+struct FollowerKnown {
+    RecordCount count;
+};
+struct FollowerBegun {
+    RecordRange places;
+    RecordNumber number;
+};
+using StoreReply = std::variant<std::monostate, Granted, Refused, Durable, EndKnown, SupplyFailed, Settled, PageReady,
+                                StorageFailed, FollowerKnown, FollowerBegun>;
 
 /// Hands a reply to the session.
 void deliver(const StoreReply& reply, session::Session& session, Instant now, session::Effects& effects);
 
+/// The feeder's places become the numbers of the job that lies there, and back.
 /// Flow: take() each request in order; commit() when wants_commit(), at once if intent_waits(), within 50 ms otherwise;
 /// read_ahead() when nothing else is to do, then supply_step(); take_replies() after each. The End request is the last.
 class StoreWork {
 public:
-    /// `supply` = the import of the job, if it is still running, with records that are durable; it must outlive this.
-    StoreWork(spool::Spool& spool, spool::JobId job, LedgerKeeper keeper, Supply* supply = nullptr);
+    /// `supply` = the import of the job, if it is still running, with records that are durable; it must outlive this,
+    /// and no job can follow then.
+    StoreWork(spool::Spool& spool, LedgerKeeper keeper, Supply* supply = nullptr);
 
     void take(const StoreRequest& request);
     /// Rows wait to be written.
@@ -67,7 +82,7 @@ public:
     /// Writes them in one transaction.
     void commit();
     /// The same in two steps, for a transaction with other runs: these rows are to be written, and then rows_written().
-    [[nodiscard]] spool::JobRows pending_rows() const { return {job_, keeper_.pending_rows()}; }
+    [[nodiscard]] std::vector<spool::JobRows> pending_rows() const;
     void rows_written();
     [[nodiscard]] bool wants_read_ahead() const;
     /// Reads one page.
@@ -88,22 +103,40 @@ public:
     [[nodiscard]] const std::string& failure() const { return failure_; }
 
 private:
+    /// A job of this run.
+    struct Part {
+        LedgerKeeper keeper;
+        JobPlaces places{};
+        bool follows = false;  ///< its first record goes out with number 0
+        RecordRange to_read{}; ///< records whose pages have not been read yet
+    };
+
     void take_page_back(const RecordPage* page);
     void settle(const feeder::Settle& settle);
+    void settle_parts(const feeder::Settle& settle);
     void grant(const feeder::BeginRun& begin);
     void adopt(const feeder::AdoptRun& adopted);
+    void go_on(const LedgerKeeper::Grant& grant, RecordNumber read_behind);
+    void offer(const OfferFollower& follower);
+    [[nodiscard]] bool may_be_followed(const Part& part, RecordRange records) const;
+    void begin_follower(const feeder::BeginRun& begin);
+    void extend_intents();
+    void confirm(RecordNumber through, const protocol::MailStatus& evidence);
+    void leave_printed_job();
     void end(const feeder::End& end);
+    [[nodiscard]] RecordNumber intent_through() const;
     void report_durable();
     void fail(Failure failure);
     void take_supply();
-    [[nodiscard]] RecordRange readable() const;
+    [[nodiscard]] RecordRange readable(const Part& part) const;
 
     spool::Spool& spool_;
-    spool::JobId job_;
-    LedgerKeeper keeper_;
+    std::deque<Part> parts_; ///< one, or the one that is printed and its follower
+    feeder::Numbering numbering_;
+    RecordNumber intent_wanted_;            ///< place
+    std::optional<OfferFollower> follower_; ///< waits
     Supply* supply_;
     bool supply_over_ = false;                     ///< its end or failure has been told
-    RecordRange to_read_;                          ///< records whose pages have not been read yet
     std::deque<std::unique_ptr<RecordPage>> lent_; ///< at most session::max_pages
     RecordNumber durable_reported_;
     std::vector<StoreReply> replies_;

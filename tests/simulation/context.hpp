@@ -15,8 +15,9 @@ struct Counts {
     std::uint64_t other_prints = 0; ///< other jobs, end markers
     std::uint64_t underruns = 0;    ///< all of them explained
     std::uint64_t runs = 0;
-    std::uint64_t starts = 0;   ///< of the program
-    std::uint64_t in_doubt = 0; ///< records named in doubt
+    std::uint64_t starts = 0;    ///< of the program
+    std::uint64_t followers = 0; ///< jobs that followed without a stop
+    std::uint64_t in_doubt = 0;  ///< records named in doubt
     std::uint64_t bytes_damaged = 0;
     Duration printing{0}; ///< time in state printing
     Duration simulated{0};
@@ -28,6 +29,7 @@ struct Counts {
         underruns += other.underruns;
         runs += other.runs;
         starts += other.starts;
+        followers += other.followers;
         in_doubt += other.in_doubt;
         bytes_damaged += other.bytes_damaged;
         printing += other.printing;

@@ -23,9 +23,10 @@ namespace linefeed::simulation {
 /// What the operator was told at the end.
 struct Ending {
     feeder::OutcomeCode code = feeder::OutcomeCode::finished;
-    std::vector<RecordRange> in_doubt;
-    bool complete = false;     ///< nothing is left to print
-    bool word_refused = false; ///< "last product" says too much or too little: the products must be named
+    std::vector<RecordRange> in_doubt; ///< ids, all of one job
+    ScenarioJob doubted{};             ///< that job
+    bool complete = false;             ///< nothing is left to print
+    bool word_refused = false;         ///< "last product" says too much or too little: the products must be named
 };
 
 class Host {
@@ -34,7 +35,7 @@ public:
     ~Host();
 
     /// Reads the file into the spool. A violation if that fails.
-    void import_job();
+    void import_jobs();
     /// The operator enters the command. Precondition: not running.
     void start(const daemon::OperatorWord& word);
     [[nodiscard]] bool running() const { return run_ != nullptr; }
@@ -73,10 +74,21 @@ public:
 
 private:
     struct Run;
+    struct Job {
+        spool::JobId id{};
+        RecordRange numbers;
+        ScenarioJob ids{};
+    };
+    void import(const ScenarioJob& ids);
+    [[nodiscard]] std::size_t next_job();
     void next_run();
+    [[nodiscard]] bool ask_about_others();
+    void offer_follower();
+    void look_at_ledger(const Job& job);
+    void check_spool(const Job& job);
     void end_process(feeder::OutcomeCode code);
     [[nodiscard]] bool open_spool();
-    void begin_run(const std::optional<store::OpenIssue>& open);
+    void begin_run(const std::optional<store::OpenIssue>& open, spool::JobId job, RecordRange wanted);
     void run_over();
     void die();
 
@@ -97,14 +109,17 @@ private:
     Wire& wire_;
     Random random_;
     std::optional<spool::Spool> spool_;
-    spool::JobId job_{};
-    RecordRange wanted_;
+    std::vector<Job> jobs_;
+    std::size_t at_work_ = 0; ///< the job that is printed
+    std::optional<std::size_t> offered_;
+    std::optional<spool::JobId> asked_about_; ///< by this run
     std::unique_ptr<Run> run_;
     daemon::NoisePatience patience_;
     daemon::JobRunSettings changed_by_noise_;
     session::Effects effects_;
     Ending ending_;
     daemon::OperatorWord word_;
+    ScenarioJob word_for_{}; ///< the job that it is about
     bool word_counts_ = false;
     bool interrupted_ = false;
     bool records_open_ = false;

@@ -66,6 +66,7 @@ void Host::on_effect(const session::Effect& effect) {
         push_cumulative();
         run.store.push(*settle);
     } else if (const auto* begin = std::get_if<feeder::BeginRun>(&effect)) {
+        push_cumulative();
         run.store.push(*begin);
     } else if (const auto* adopt = std::get_if<feeder::AdoptRun>(&effect)) {
         context_.trace.note(context_.now, "takes over", adopt->printed_through.value(), adopt->sent_through.value());
@@ -75,6 +76,11 @@ void Host::on_effect(const session::Effect& effect) {
         run.store.push(store::PageReturned{release->page});
     } else if (const auto* notice = std::get_if<feeder::Notice>(&effect)) {
         context_.trace.note(context_.now, "notice", static_cast<std::uint64_t>(notice->code));
+        if (notice->code == feeder::NoticeCode::follower_printing) {
+            ++context_.counts.followers;
+            at_work_ = *std::exchange(offered_, std::nullopt);
+            offer_follower();
+        }
     } else if (const auto* end = std::get_if<feeder::End>(&effect)) {
         run.outcome = end->outcome;
         push_cumulative();

@@ -34,9 +34,9 @@ std::optional<Instant> Host::taken_over() const {
     return run_ ? run_->taken_over : std::nullopt;
 }
 
-void Host::begin_run(const std::optional<store::OpenIssue>& open) {
+void Host::begin_run(const std::optional<store::OpenIssue>& open, spool::JobId job, RecordRange wanted) {
     ++context_.counts.runs;
-    const feeder::FeederPlan plan = store::make_plan(open, job_, wanted_);
+    const feeder::FeederPlan plan = store::make_plan(open, job, wanted);
     session::SessionSettings settings;
     settings.feeder.open_nozzle = context_.scenario.open_nozzle;
     settings.charsets.resize(context_.scenario.two_fields ? 2 : 1, protocol::Charset::latin1);
@@ -46,10 +46,9 @@ void Host::begin_run(const std::optional<store::OpenIssue>& open) {
     const std::uint64_t generation = ++generation_;
     run_ = std::make_unique<Run>(
         settings, plan,
-        VirtualStore{
-            context_, random_.fork(generation),
-            store::StoreWork{*spool_, job_, store::LedgerKeeper{*spool_, job_, wanted_, "tcp://printer:3000", open}},
-            generation},
+        VirtualStore{context_, random_.fork(generation),
+                     store::StoreWork{*spool_, store::LedgerKeeper{*spool_, job, wanted, "tcp://printer:3000", open}},
+                     generation},
         generation);
     const bool reachable = !wire_.down();
     context_.after(reachable ? 2 * wire_.latency() : connect_timeout, EventKind::connected, generation,
@@ -205,6 +204,10 @@ void Host::run_over() {
     }
     ending_.code = outcome.code;
     word_counts_ = word_counts_ && !outcome.issued;
+    if (asked_about_) { // next_run() sees what has become of it
+        next_run();
+        return;
+    }
     const bool doubt_to_settle = outcome.code == feeder::OutcomeCode::records_in_doubt && !outcome.issued;
     if (outcome.code != feeder::OutcomeCode::finished && !doubt_to_settle && !noise_only) {
         end_process(outcome.code);

@@ -12,7 +12,31 @@ std::string record(RecordNumber number) {
 
 Judge::Judge(Context& context)
     : context_(context)
-    , products_(context.scenario.records) {}
+    , products_(context.scenario.records) {
+    if (context.scenario.jobs.size() > 1) {
+        for (std::uint32_t id = context.scenario.first(); id <= context.scenario.last(); ++id) {
+            context.scenario.text_of(id, expected_);
+            ids_.emplace(expected_, id);
+        }
+    }
+}
+
+/// With one job its number; with several the text tells which it is.
+RecordNumber Judge::id_of(RecordNumber number, const std::string& text) const {
+    const auto found = ids_.find(text);
+    return found == ids_.end() ? number : RecordNumber{found->second};
+}
+
+/// Number 0 begins a new sequence, and only the first record of a job that follows another may have it.
+bool Judge::may_go_out_as(RecordNumber id, RecordNumber number) const {
+    for (const ScenarioJob& job : context_.scenario.jobs) {
+        if (job.has(id.value())) {
+            const bool begins = id.value() == job.first && job.first != context_.scenario.first();
+            return number.value() == id.value() - job.behind || (begins && number == RecordNumber{});
+        }
+    }
+    return true;
+}
 
 void Judge::violation(std::string what) {
     context_.trace.say(context_.now, "VIOLATION", what);
@@ -27,13 +51,14 @@ Judge::Product* Judge::product(RecordNumber number) {
                                                                                : &products_[number.value() - first];
 }
 
-void Judge::printed(RecordNumber number, std::string_view text) {
+void Judge::printed(RecordNumber sent_as, std::string_view text) {
     if (text.empty() || text.front() != 'R') {
         ++context_.counts.other_prints; // of another job, or the blank behind the last record
         last_is_ours_ = false;
         return;
     }
     ++context_.counts.prints;
+    const RecordNumber number = id_of(sent_as, std::string{text});
     Product* it = product(number);
     context_.scenario.text_of(number.value(), expected_);
     if (it == nullptr || text != expected_) {
@@ -49,15 +74,24 @@ void Judge::printed(RecordNumber number, std::string_view text) {
     if (it->complete > it->may_repeat) {
         violation("printed twice: " + record(number));
     }
+    if (!may_go_out_as(number, sent_as)) {
+        violation("a wrong number: " + record(number) + " went out as " + std::to_string(sent_as.value()));
+    }
     ++it->complete;
     last_ = number;
+    last_number_ = sent_as;
     last_complete_ = true;
     last_is_ours_ = true;
 }
 
+void Judge::printed_again() {
+    ++context_.counts.other_prints;
+    last_is_ours_ = false;
+}
+
 void Judge::print_aborted(RecordNumber number) {
-    Product* it = product(number);
-    if (it != nullptr && last_is_ours_ && number == last_ && last_complete_) {
+    Product* it = product(last_);
+    if (it != nullptr && last_is_ours_ && number == last_number_ && last_complete_) {
         --it->complete;
         ++it->aborted;
         last_complete_ = false;
@@ -150,7 +184,7 @@ bool Judge::is_on_a_product(RecordNumber number) const {
     return products_[number.value() - context_.scenario.first()].complete > 0;
 }
 
-void Judge::check_ledger(const spool::LedgerState& state) {
+void Judge::check_ledger(const spool::LedgerState& state, const ScenarioJob& job) {
     for (const spool::LedgerSegment& segment : state.segments()) {
         const bool says_printed = segment.state == spool::RecordState::printed;
         const bool says_unused = segment.state == spool::RecordState::unused;
@@ -159,9 +193,9 @@ void Judge::check_ledger(const spool::LedgerState& state) {
             continue;
         }
         for (std::uint64_t i = 0; i < segment.range.count().value(); ++i) {
-            const RecordNumber number = segment.range.first() + RecordCount{i};
+            const RecordNumber number = segment.range.first() + RecordCount{i + job.behind};
             Product* it = product(number);
-            if (it == nullptr) {
+            if (it == nullptr || !job.has(number.value())) {
                 violation("the ledger knows a record that the job does not have: " + record(number));
                 return;
             }

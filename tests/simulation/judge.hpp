@@ -9,16 +9,20 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <vector>
 
 namespace linefeed::simulation {
 
+/// It knows the records by their ids (ScenarioJob), unless they are said to be numbers as they went out.
 class Judge {
 public:
     explicit Judge(Context& context);
 
     // The tape
     void printed(RecordNumber number, std::string_view text);
+    /// A person has started the printer, and it prints its last record again: nobody can keep it from that.
+    void printed_again();
     void print_aborted(RecordNumber number);
     void underrun(bool explained);
     /// A product got what the job shows before the first record: it was missed as at an underrun, but nothing stops.
@@ -42,7 +46,7 @@ public:
     [[nodiscard]] bool is_on_a_product(RecordNumber number) const;
 
     /// Every record that the ledger calls printed is on a product, every record that it calls unused is on none.
-    void check_ledger(const spool::LedgerState& state);
+    void check_ledger(const spool::LedgerState& state, const ScenarioJob& job);
     /// The program said that everything is printed.
     void check_finished(const spool::LedgerState& state);
     /// All is over: no record is left out.
@@ -64,11 +68,15 @@ private:
         bool spoiled = false; ///< a product carries it with a damaged text
     };
     [[nodiscard]] Product* product(RecordNumber number);
+    [[nodiscard]] RecordNumber id_of(RecordNumber number, const std::string& text) const;
+    [[nodiscard]] bool may_go_out_as(RecordNumber id, RecordNumber number) const;
     [[nodiscard]] bool printer_could_not_be_stopped() const;
 
     Context& context_;
     std::vector<Product> products_;
+    std::unordered_map<std::string, std::uint32_t> ids_; ///< by text, with several jobs
     RecordNumber last_;
+    RecordNumber last_number_; ///< that it went out with
     bool last_complete_ = true;
     bool last_is_ours_ = true; ///< the product printed last of all carries a record of the job
     std::string expected_;

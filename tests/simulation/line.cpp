@@ -175,7 +175,11 @@ void Line::carry_out() {
 void Line::carry_out(simulator::Effect& effect) {
     if (const auto* print = std::get_if<simulator::Printed>(&effect)) {
         context_.trace.note(context_.now, "print", print->number.value());
-        judge_.printed(print->number, print->text);
+        if (print->source == simulator::PrintSource::last_record_again && started_empty_) {
+            judge_.printed_again(); // the numbering law: number 0 was the last before the stop
+        } else {
+            judge_.printed(print->number, print->text);
+        }
         const bool without_record =
             print->source == simulator::PrintSource::job || print->source == simulator::PrintSource::extern_text;
         if (without_record) {
@@ -209,6 +213,7 @@ void Line::carry_out(simulator::Effect& effect) {
         context_.trace.note(context_.now, "machine state", static_cast<std::uint64_t>(state->machine),
                             state->cover_open ? 1 : 0);
         started_by_host_ = started_by_host_ && printer_->printing();
+        started_empty_ = printer_->printing() && !started_by_host_ && printer_->fifo().records() == 0;
         others_interfere_ = others_interfere_ && (printer_->printing() || printer_->fifo().records() > 0);
     } else if (std::holds_alternative<simulator::ConnectionsLost>(effect)) {
         context_.trace.note(context_.now, "printer restarted");

@@ -90,6 +90,7 @@ private:
     bool fast_ = false;
     bool others_interfere_ = false;
     bool next_is_intact_ = false;  ///< the record that lies ready carries its own text; with CRC32 only
+    bool started_empty_ = false;   ///< by a person, with nothing in the FIFO
     bool started_by_host_ = false; ///< or by somebody who does not ask whether records are there
     // at()
     std::function<void()> deed_;

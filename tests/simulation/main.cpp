@@ -54,6 +54,7 @@ Profile profile_of(std::string_view word) {
     return word == "line"      ? Profile::line
            : word == "counted" ? Profile::counted
            : word == "secured" ? Profile::secured
+           : word == "chained" ? Profile::chained
                                : Profile::mixed;
 }
 
@@ -132,6 +133,7 @@ private:
             static_cast<unsigned long long>(seeds_), simulated_s / 3600, printing_s / 3600,
             static_cast<unsigned long long>(counts_.prints), static_cast<unsigned long long>(counts_.other_prints),
             static_cast<unsigned long long>(counts_.starts), static_cast<unsigned long long>(counts_.runs));
+        std::printf("%llu jobs followed without a stop\n", static_cast<unsigned long long>(counts_.followers));
         std::printf("%llu records named in doubt, %llu underruns with a reason\nfaults: byte lost or damaged %llu,",
                     static_cast<unsigned long long>(counts_.in_doubt),
                     static_cast<unsigned long long>(counts_.underruns),
@@ -165,8 +167,8 @@ int main(int argc, char** argv) {
     app.add_option("--count", options.count, "How many seeds");
     app.add_option("--hours", options.hours, "Go on until the line has printed for so many hours");
     app.add_option("--regressions", options.regressions, "Run the seeds of this file")->check(CLI::ExistingFile);
-    app.add_option("--profile", options.profile, "mixed, counted, secured or line")
-        ->check(CLI::IsMember({"mixed", "counted", "secured", "line"}));
+    app.add_option("--profile", options.profile, "mixed, counted, secured, chained or line")
+        ->check(CLI::IsMember({"mixed", "counted", "secured", "chained", "line"}));
     app.add_flag("--trace", options.trace, "Print everything that happens");
     app.add_flag("--twice", options.twice, "Run each seed twice and compare");
     app.add_flag("--stop-at-first", options.stop_at_first, "End at the first violation");

@@ -2,7 +2,7 @@
 # Shows that the judge can fail: compiles each file of the core that has a deliberate mistake (mutations/*.patch), links the simulation with it
 # and runs seeds until one catches it. Prints a table. Fails if a patch does not apply or a mistake is not caught within the seeds allowed.
 #   mutate.sh SOURCE_DIR BUILD_DIR [SEEDS] [PATTERN]
-# Mistakes with "secured" in their name are looked for with the profile of that name.
+# Mistakes with "secured" or "chained" in their name are looked for with the profile of that name.
 # BUILD_DIR is a configured build (Ninja); only the mistaken file is compiled anew, into BUILD_DIR/mutations. Patches are of .cpp files.
 set -eu
 source=$(cd "$1" && pwd)
@@ -24,7 +24,7 @@ run() {
     grep -m 1 '^VIOLATION' "$work/run.log" || true
 }
 
-for profile in mixed secured; do
+for profile in mixed secured chained; do
     caught=$(run bin/linefeed_simulation $profile)
     [ -z "$caught" ] || { echo "the simulation finds something without any mistake: $caught"; exit 1; }
 done
@@ -44,6 +44,7 @@ for patch in "$here"/mutations/*${pattern}*.patch; do
     { sh -c "$compile" && sh -c "$with_mistake"; } >"$work/build.log" 2>&1 || { echo "$name does not compile:"; tail -20 "$work/build.log"; exit 1; }
     case $name in
         *secured*) profile=secured ;;
+        *chained*) profile=chained ;;
         *) profile=mixed ;;
     esac
     caught=$(run "$work/mistaken" $profile)

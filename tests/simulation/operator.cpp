@@ -92,6 +92,7 @@ daemon::OperatorWord Operator::decides() {
     if (doubt.empty()) {
         return word;
     }
+    const ScenarioJob& job = host_.ending().doubted;
     const RecordNumber first = doubt.front().first();
     // A jump in the numbers on the products: "the last product" would say too much. So would one from before
     // his last word.
@@ -110,7 +111,8 @@ daemon::OperatorWord Operator::decides() {
         std::for_each(doubt.begin(), doubt.end(), [this](const RecordRange& range) { judge_.will_reprint(range); });
         return word;
     }
-    if (jump || from_before || host_.ending().word_refused || random_.chance(0.2)) {
+    const bool of_another_job = context_.scenario.jobs.size() > 1 && !job.has(judge_.last().value());
+    if (jump || from_before || of_another_job || host_.ending().word_refused || random_.chance(0.2)) {
         word.printed = names_products(doubt);
         context_.trace.say(context_.now, "products", *word.printed);
         return word;
@@ -127,7 +129,7 @@ daemon::OperatorWord Operator::decides() {
     if (last > doubt.back().last()) {
         judge_.violation("in doubt although a later record is on the last product");
     }
-    word.last_printed = std::to_string(std::max(last, before_first).value());
+    word.last_printed = std::to_string(std::max(last, before_first).value() - job.behind);
     context_.trace.say(context_.now, "last product", word.last_printed);
     return word;
 }
@@ -140,7 +142,7 @@ std::string Operator::names_products(const std::vector<RecordRange>& doubt) {
         for (std::uint64_t i = 0; i < range.count().value(); ++i) {
             const RecordNumber number = range.first() + RecordCount{i};
             if (judge_.is_on_a_product(number)) {
-                names += (names.empty() ? "" : ",") + std::to_string(number.value());
+                names += (names.empty() ? "" : ",") + std::to_string(number.value() - host_.ending().doubted.behind);
             }
         }
     }

@@ -126,6 +126,34 @@ void draw_counter(Scenario& scenario, Random random) {
     scenario.start_under_fill = false;
 }
 
+/// The records in several jobs. What other clients send is told from ours by its numbers, which must not begin anew for
+/// that.
+void draw_jobs(Scenario& scenario, Random random) {
+    for (const Fault fault :
+         {Fault::another_job, Fault::foreign_flush, Fault::foreign_stop_point, Fault::foreign_record}) {
+        scenario.weights[static_cast<std::size_t>(fault)] = 0;
+    }
+    scenario.weights[static_cast<std::size_t>(Fault::stop_by_linefeed)] += 1;
+    scenario.records = std::max(scenario.records, 100U);
+    if (random.chance(0.8)) { // a printer that lets a job follow
+        simulator::PrinterSettings& printer = scenario.printer;
+        printer.habits.no_total_counter = printer.habits.ignore_stop_at = false;
+        printer.depth = std::max(printer.depth, 16U);
+    }
+    std::uint32_t next = scenario.first();
+    while (next <= scenario.last()) {
+        const std::uint32_t rest = scenario.last() - next + 1;
+        const auto drawn =
+            static_cast<std::uint32_t>(random.chance(0.15) ? random.between(1, 3) : random.spread(8, 400));
+        const std::uint32_t count = std::min(drawn, rest);
+        const std::uint32_t base = next == scenario.first() ? scenario.base
+                                   : random.chance(0.7)     ? 0
+                                                            : static_cast<std::uint32_t>(random.below(next));
+        scenario.jobs.push_back({next, next + count - 1, next - 1 - base});
+        next += count;
+    }
+}
+
 } // namespace
 
 Scenario draw_scenario(std::uint64_t seed, Profile profile) {
@@ -138,6 +166,7 @@ Scenario draw_scenario(std::uint64_t seed, Profile profile) {
         scenario.gather = 40ms;
         scenario.latency = {100us, 100us};
         scenario.commit = {1ms, 1ms};
+        scenario.jobs.push_back({scenario.first(), scenario.last(), 0});
         return scenario;
     }
     Random random = Random{seed}.fork(1);
@@ -191,6 +220,11 @@ Scenario draw_scenario(std::uint64_t seed, Profile profile) {
     }
     if (profile != Profile::counted) {
         draw_counter(scenario, Random{seed}.fork(6));
+    }
+    if (profile == Profile::chained) {
+        draw_jobs(scenario, Random{seed}.fork(8));
+    } else {
+        scenario.jobs.push_back({scenario.first(), scenario.last(), 0});
     }
     return scenario;
 }

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace linefeed::simulation {
 
@@ -55,9 +56,20 @@ struct Span {
     Duration high{1};
 };
 
+/// A part of the records that is a job of its own. The records of all jobs have consecutive ids, which stand on the
+/// products; the numbers begin anew with each.
+struct ScenarioJob {
+    std::uint32_t first = 0; ///< id
+    std::uint32_t last = 0;
+    std::uint32_t behind = 0; ///< number = id − behind
+
+    [[nodiscard]] bool has(std::uint32_t id) const { return first <= id && id <= last; }
+};
+
 struct Scenario {
     std::uint64_t seed = 0;
-    // The job
+    // The job, or several in a queue
+    std::vector<ScenarioJob> jobs{};
     std::uint32_t base = 0;
     std::uint32_t records = 100;
     std::uint32_t page_records = 512;
@@ -97,7 +109,7 @@ struct Scenario {
     /// The longest that a first record needs from the takeover of a printer to its PrintGo: ledger, way and margin.
     [[nodiscard]] Duration first_refill() const;
     /// What stands on the product of a record: the fields joined by TAB.
-    void text_of(std::uint32_t number, std::string& out) const;
+    void text_of(std::uint32_t id, std::string& out) const;
     [[nodiscard]] std::uint32_t first() const { return base + 1; }
     [[nodiscard]] std::uint32_t last() const { return base + records; }
 };
@@ -106,6 +118,7 @@ struct Scenario {
 enum class Profile {
     mixed,   ///< everything
     counted, ///< the same, but every printer has its total print counter
+    chained, ///< everything but foreign records, with several jobs, each of which may follow without a stop
     secured, ///< everything, with CRC32, and noise that spares no byte
     line,    ///< 1 000 prints/s without faults: measures the speed of the simulation
 };

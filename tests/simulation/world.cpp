@@ -29,7 +29,7 @@ public:
     }
 
     RunResult run() {
-        host_.import_job();
+        host_.import_jobs();
         host_.start({});
         while (!judge_.violated() && !operator_.done()) {
             step();

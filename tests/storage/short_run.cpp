@@ -83,8 +83,7 @@ void ShortRun::print(spool::Spool& spool, const spool::Job& job) {
     durable_through_ = reported_through_ = {};
     pages_.clear();
     const std::optional<store::OpenIssue> earlier = *open;
-    StoreWork work{spool, job.id,
-                   store::LedgerKeeper{spool, job.id, job.records, "tcp://10.0.0.5:3000", std::move(*open)}};
+    StoreWork work{spool, store::LedgerKeeper{spool, job.id, job.records, "tcp://10.0.0.5:3000", std::move(*open)}};
     if (earlier) {
         settle_earlier(work, *earlier);
     }
@@ -106,7 +105,7 @@ void ShortRun::print(spool::Spool& spool, const spool::Job& job) {
 void ShortRun::settle_earlier(StoreWork& work, const store::OpenIssue& open) {
     feeder::Settle settle;
     settle.earlier_run = true;
-    const RecordRange issued = open.records;
+    const RecordRange issued = open.jobs.front().records;
     if (tape_ > issued.last()) {
         misprint_ = "record " + std::to_string(tape_.value()) + " was printed without an intent";
         return;

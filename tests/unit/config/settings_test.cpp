@@ -47,7 +47,7 @@ layouts:
 printers:
   p: {address: "tcp://10.0.0.1:3002", profile: "jet2neo,escapes=off", job_file: 'FFSDISK\JOBS\a.job', open_nozzle: true, errors: {5043: report},
       poll_min: 400 us, poll_max: 1 s, expected_rate: 30, connect_timeout: 1 s, reply_timeout: 500 ms, watch_interval: 1 min,
-      queue: {autostart: true, chain: stop}}
+      queue: {autostart: true, chain: seamless}}
 folders:
   f: {path: /d, layout: a, printer: p, pattern: "*.csv", autostart: true, watch: poll, settle: done-companion, poll_interval: 1 h,
       grown_files: print}
@@ -76,7 +76,7 @@ folders:
     EXPECT_EQ(printer.pacing.poll_min, 400us);
     EXPECT_EQ(printer.reply_timeout, 500ms);
     EXPECT_EQ(printer.watch_interval, 1min);
-    EXPECT_EQ(printer.queue.chain, Chain::stop);
+    EXPECT_EQ(printer.queue.chain, Chain::seamless);
     EXPECT_EQ(printer.errors.at(5043), ErrorPolicy::report);
     const FolderSettings& folder = settings->folders.front();
     EXPECT_EQ(folder.watch, Watch::poll);

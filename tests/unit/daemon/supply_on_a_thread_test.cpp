@@ -51,8 +51,8 @@ TEST_F(SupplyOnAThread, shouldImportForOneRunWhileItServesAnother) {
         import.wants_step() ? import.step() : import.wait(20);
     }
     store::StoreThread thread{*spool_};
-    store::Store other{store::StoreWork{*spool_, job_, keeper(job_)}};
-    store::Store store{store::StoreWork{*spool_, import.job(), keeper(import.job()), &import}};
+    store::Store other{store::StoreWork{*spool_, keeper(job_)}};
+    store::Store store{store::StoreWork{*spool_, keeper(import.job()), &import}};
     thread.add(other);
     thread.add(store);
     ASSERT_TRUE(other.push(feeder::BeginRun{}) && store.push(feeder::BeginRun{}));
@@ -82,7 +82,7 @@ TEST_F(SupplyOnAThread, shouldGiveTheImportBackWhenTheRunEnds) {
     }
     {
         store::StoreThread thread{*spool_};
-        store::Store store{store::StoreWork{*spool_, import.job(), keeper(import.job()), &import}};
+        store::Store store{store::StoreWork{*spool_, keeper(import.job()), &import}};
         thread.add(store);
         end(store);
     } // nobody may be woken there any more

@@ -471,5 +471,23 @@ TEST(FeederStopPoint, shouldStopWhenSomebodyElseSetsTheStopPoint) {
     EXPECT_NE(story.take().find("end: impossible_report"), std::string::npos);
 }
 
+TEST(FeederStopPoint, shouldBelieveTheNumberWhereTheCounterDoesNotMove) {
+    Story story;
+    story.arm_to_grant();
+    story.granted();
+    story.sm(0, 77, 0);
+    story.sm(0, 77, 0);
+    story.sm(0, 77, 0);
+    story.supplied(Story::last);
+    story.sm(3, 77, 0);
+    story.wait(FeederSettings{}.fill_lead);
+    story.rs(Story::State::printing);
+    story.sm(3, 77, 0);
+    story.sm(2, 101, 0);
+    ASSERT_NE(story.take().find("?CC"), std::string::npos) << "no stop point bears it out";
+    story.cc(1000);
+    story.expect("printed through 101");
+}
+
 } // namespace
 } // namespace linefeed::feeder

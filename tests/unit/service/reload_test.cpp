@@ -129,11 +129,5 @@ TEST_F(ReloadTest, shouldBeginToWatchAFolderThatIsNew) {
     EXPECT_THAT(service_->folders(), SizeIs(0));
 }
 
-TEST_F(ReloadTest, shouldRefuseAChainWithoutAStopAsLongAsItIsNotPossible) {
-    const auto settings = config::parse_settings(settings_text({"h:1"}, ", queue: {chain: seamless}"), "f.yaml", {});
-    ASSERT_FALSE(settings);
-    EXPECT_THAT(config::to_string(settings.error().kept().front()), HasSubstr("not possible in this version"));
-}
-
 } // namespace
 } // namespace linefeed::service

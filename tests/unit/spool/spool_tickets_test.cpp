@@ -84,6 +84,27 @@ TEST_F(SpoolTicketsTest, shouldListWhatWasBegun) {
     EXPECT_THAT(jobs_of(spool.begun_jobs()), ElementsAre(b));
 }
 
+TEST_F(SpoolTicketsTest, shouldSeePastTheJobAtWork) {
+    Spool spool = open();
+    const JobId at_work = make_job(spool, 10).id;
+    const JobId next = make_job(spool, 10).id;
+    const auto write = [&](JobId job, std::int64_t place, bool begun) {
+        Ticket written = ticket(job, "line1", place);
+        written.begun = begun;
+        ASSERT_TRUE(spool.write_ticket(written));
+    };
+    write(at_work, 1, true);
+    EXPECT_TRUE(spool.has_begun_job("line1").value());
+    EXPECT_FALSE(spool.has_begun_job("line1", at_work).value());
+    EXPECT_EQ(spool.first_in_queue("line1", at_work).value(), std::nullopt);
+    write(next, 2, false);
+    EXPECT_EQ(spool.first_in_queue("line1").value()->job, at_work);
+    EXPECT_EQ(spool.first_in_queue("line1", at_work).value()->job, next);
+    write(next, 2, true);
+    EXPECT_TRUE(spool.has_begun_job("line1", at_work).value());
+    EXPECT_FALSE(spool.has_begun_job("line2", at_work).value());
+}
+
 TEST_F(SpoolTicketsTest, shouldFindJobsByTheirFirstRecord) {
     Spool spool = open();
     const JobId a = make_job(spool, 10).id;

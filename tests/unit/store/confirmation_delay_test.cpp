@@ -37,10 +37,8 @@ protected:
 
         Run(spool::Spool& spool, spool::JobId id)
             : job(id)
-            , store(
-                  StoreWork{spool, id,
-                            LedgerKeeper{spool, id, closed(1, records_of_page), "tcp://10.0.0.5:3000", std::nullopt}}) {
-        }
+            , store(StoreWork{
+                  spool, LedgerKeeper{spool, id, closed(1, records_of_page), "tcp://10.0.0.5:3000", std::nullopt}}) {}
     };
 
     void SetUp() override {

@@ -39,6 +39,13 @@ protected:
         begin.last_printed_before = RecordNumber{77};
         return begin;
     }
+    /// As a run's end would make it.
+    [[nodiscard]] bool settled(LedgerKeeper& ledger, const feeder::Settle& settle) {
+        ledger.confirm(settle.confirmed_through, settle.evidence.mail);
+        EXPECT_TRUE(ledger.commit());
+        auto rows = ledger.verdict_rows(settle);
+        return rows && append_all(*spool_, {std::move(*rows)});
+    }
     /// The next start of the program finds the records 131 … 512 open.
     void crash() {
         LedgerKeeper ledger = keeper();
@@ -105,7 +112,7 @@ TEST_F(LedgerKeeperTest, shouldCallUnusedWhatIsNeitherPrintedNorInDoubt) {
     ASSERT_TRUE(ledger.grant(begin()));
     ledger.printed(RecordNumber{100}, {});
     // The records behind 356 were intended, but never sent: the feeder does not name them.
-    ASSERT_TRUE(ledger.settle(verdict(closed(101, 120), closed(121, 121), closed(122, 356))));
+    ASSERT_TRUE(settled(ledger, verdict(closed(101, 120), closed(121, 121), closed(122, 356))));
     ASSERT_TRUE(ledger.finish(ended(feeder::OutcomeCode::stop_requested)));
     EXPECT_EQ(in_state(RecordState::printed), Ranges{closed(1, 120)});
     EXPECT_EQ(in_state(RecordState::in_doubt), Ranges{closed(121, 121)});
@@ -114,11 +121,21 @@ TEST_F(LedgerKeeperTest, shouldCallUnusedWhatIsNeitherPrintedNorInDoubt) {
     EXPECT_EQ(kinds().back(), LedgerKind::run_ended);
 }
 
+TEST_F(LedgerKeeperTest, shouldSayThatTheEndCannotBeWritten) {
+    LedgerKeeper ledger = keeper();
+    ASSERT_TRUE(ledger.grant(begin()));
+    ledger.printed(RecordNumber{100}, {});
+    spool_.reset();
+    auto read_only = spool::Spool::open_for_reading(directory_ / "spool.db", {}).value();
+    spool_.emplace(std::move(read_only));
+    EXPECT_FALSE(ledger.finish(ended(feeder::OutcomeCode::stop_requested)));
+}
+
 TEST_F(LedgerKeeperTest, shouldContinueBehindTheLastPrintedRecord) {
     {
         LedgerKeeper ledger = keeper();
         ASSERT_TRUE(ledger.grant(begin()));
-        ASSERT_TRUE(ledger.settle(verdict(closed(1, 120), {}, closed(121, 256))));
+        ASSERT_TRUE(settled(ledger, verdict(closed(1, 120), {}, closed(121, 256))));
     }
     LedgerKeeper ledger = keeper();
     const auto grant = ledger.grant(begin());
@@ -130,7 +147,7 @@ TEST_F(LedgerKeeperTest, shouldGrantNothingWhenAllIsPrinted) {
     {
         LedgerKeeper ledger = keeper(closed(1, 100));
         ASSERT_TRUE(ledger.grant(begin()));
-        ASSERT_TRUE(ledger.settle(verdict(closed(1, 100), {}, {})));
+        ASSERT_TRUE(settled(ledger, verdict(closed(1, 100), {}, {})));
     }
     LedgerKeeper ledger = keeper(closed(1, 100));
     const auto grant = ledger.grant(begin());
@@ -145,7 +162,7 @@ TEST_F(LedgerKeeperTest, shouldGrantNothingWhileRecordsAreInDoubt) {
     {
         LedgerKeeper ledger = keeper();
         ASSERT_TRUE(ledger.grant(begin()));
-        ASSERT_TRUE(ledger.settle(verdict(closed(1, 9), closed(10, 10), {})));
+        ASSERT_TRUE(settled(ledger, verdict(closed(1, 9), closed(10, 10), {})));
     }
     LedgerKeeper ledger = keeper(closed(1000, 2000));
     const auto grant = ledger.grant(begin());
@@ -169,8 +186,9 @@ TEST_F(LedgerKeeperTest, shouldFindWhatACrashLeftOpen) {
     }
     const auto found = find_open_issue(*spool_, job_).value();
     ASSERT_TRUE(found.has_value());
-    EXPECT_EQ(found->job, job_);
-    EXPECT_EQ(found->records, closed(131, 611));
+    ASSERT_EQ(found->jobs.size(), 1U);
+    EXPECT_EQ(found->jobs.front().job, job_);
+    EXPECT_EQ(found->jobs.front().records, closed(131, 611));
     EXPECT_EQ(found->printer, "tcp://10.0.0.5:3000");
     EXPECT_EQ(found->facts, (feeder::OpenRun{RecordNumber{100}, RecordNumber{130}, RecordNumber{611}, "104711", 5000,
                                              RecordNumber{77}, RecordNumber{1999}}));
@@ -247,10 +265,10 @@ TEST_F(LedgerKeeperTest, shouldFindTheEndOfACrashedRunWhenTheImportHasReachedIt)
     ledger.imported(RecordNumber{300});
     EXPECT_EQ(ledger.grant(begin())->range, closed(1, 5000));
     EXPECT_EQ(in_state(RecordState::open), Ranges{closed(1, 300)});
-    EXPECT_EQ(find_open_issue(*spool_, job_).value()->run_range, closed(1, 5000)) << "the import goes on";
+    EXPECT_EQ(find_open_issue(*spool_, job_).value()->jobs.front().run_range, closed(1, 5000)) << "the import goes on";
     import.commit({}).value();
     const auto found = find_open_issue(*spool_, job_).value();
-    EXPECT_EQ(found->run_range, closed(1, 300));
+    EXPECT_EQ(found->jobs.front().run_range, closed(1, 300));
     EXPECT_EQ(found->facts.last, RecordNumber{300});
 }
 
@@ -271,9 +289,9 @@ TEST_F(LedgerKeeperTest, shouldWriteNothingWhenAnEarlierRunHadNothingOpen) {
     {
         LedgerKeeper ledger = keeper(closed(1, 10));
         ASSERT_TRUE(ledger.grant(begin()));
-        ASSERT_TRUE(ledger.settle(verdict(closed(1, 10), {}, {})));
+        ASSERT_TRUE(settled(ledger, verdict(closed(1, 10), {}, {})));
         const auto rows = kinds().size();
-        ASSERT_TRUE(ledger.settle(verdict({}, {}, {})));
+        ASSERT_TRUE(settled(ledger, verdict({}, {}, {})));
         EXPECT_EQ(kinds().size(), rows);
     }
 }
@@ -283,17 +301,17 @@ TEST_F(LedgerKeeperTest, shouldLeaveTheRestOpenAfterAProvisionalVerdict) {
     ASSERT_TRUE(ledger.grant(begin()));
     feeder::Settle settle = verdict(closed(1, 20), {}, {});
     settle.provisional = true;
-    ASSERT_TRUE(ledger.settle(settle));
+    ASSERT_TRUE(settled(ledger, settle));
     EXPECT_EQ(in_state(RecordState::printed), Ranges{closed(1, 20)});
     EXPECT_EQ(in_state(RecordState::open), Ranges{closed(21, 512)});
-    ASSERT_TRUE(ledger.settle(verdict({}, {}, closed(21, 512))));
+    ASSERT_TRUE(settled(ledger, verdict({}, {}, closed(21, 512))));
     EXPECT_EQ(in_state(RecordState::unused), Ranges{closed(21, 512)});
 }
 
 TEST_F(LedgerKeeperTest, shouldWriteNothingBehindAVerdictThatReachesTheLastOpenRecord) {
     LedgerKeeper ledger = keeper();
     ASSERT_TRUE(ledger.grant(begin()));
-    ASSERT_TRUE(ledger.settle(verdict(closed(1, 511), closed(512, 512), {})));
+    ASSERT_TRUE(settled(ledger, verdict(closed(1, 511), closed(512, 512), {})));
     EXPECT_EQ(in_state(RecordState::printed), Ranges{closed(1, 511)});
     EXPECT_EQ(in_state(RecordState::in_doubt), Ranges{closed(512, 512)});
     EXPECT_TRUE(in_state(RecordState::unused).empty());
@@ -302,7 +320,7 @@ TEST_F(LedgerKeeperTest, shouldWriteNothingBehindAVerdictThatReachesTheLastOpenR
 TEST_F(LedgerKeeperTest, shouldTakeDoubtThatLiesBeforeWhatIsPrinted) {
     LedgerKeeper ledger = keeper();
     ASSERT_TRUE(ledger.grant(begin()));
-    ASSERT_TRUE(ledger.settle(verdict(closed(2, 512), closed(1, 1), {})));
+    ASSERT_TRUE(settled(ledger, verdict(closed(2, 512), closed(1, 1), {})));
     EXPECT_EQ(in_state(RecordState::printed), Ranges{closed(2, 512)});
     EXPECT_EQ(in_state(RecordState::in_doubt), Ranges{closed(1, 1)});
     EXPECT_TRUE(in_state(RecordState::unused).empty());

@@ -15,9 +15,8 @@ using test::SpoolJobTest;
 class StoreTest : public SpoolJobTest {
 protected:
     void start() {
-        store_.emplace(
-            StoreWork{*spool_, job_,
-                      LedgerKeeper{*spool_, job_, closed(1, records_of_job), "tcp://10.0.0.5:3000", std::nullopt}});
+        store_.emplace(StoreWork{
+            *spool_, LedgerKeeper{*spool_, job_, closed(1, records_of_job), "tcp://10.0.0.5:3000", std::nullopt}});
         thread_.emplace(*spool_);
         thread_->add(*store_);
     }

@@ -23,8 +23,7 @@ protected:
 
         Run(spool::Spool& spool, spool::JobId id)
             : job(id)
-            , store(StoreWork{spool, id,
-                              LedgerKeeper{spool, id, closed(1, 2000), "tcp://10.0.0.5:3000", std::nullopt}}) {}
+            , store(StoreWork{spool, LedgerKeeper{spool, id, closed(1, 2000), "tcp://10.0.0.5:3000", std::nullopt}}) {}
 
         template <typename Reply>
         [[nodiscard]] bool wait_for() {

@@ -21,6 +21,7 @@ protected:
         SpoolJobTest::SetUp();
         open_spool(disk.name()); // an empty one, in memory
         job_ = import_job();
+        next_ = import_job();
         {
             LedgerKeeper keeper{*spool_, job_, wanted, "tcp://10.0.0.5:3000", std::nullopt};
             ASSERT_TRUE(keeper.grant({}));
@@ -53,7 +54,7 @@ protected:
         } while (true);
     }
     void run(const std::vector<StoreRequest>& requests, const std::optional<OpenIssue>& open) {
-        StoreWork work{*spool_, job_, LedgerKeeper{*spool_, job_, wanted, "tcp://10.0.0.5:3000", open}};
+        StoreWork work{*spool_, LedgerKeeper{*spool_, job_, wanted, "tcp://10.0.0.5:3000", open}};
         for (const StoreRequest& request : requests) {
             work.take(request);
             work.checkpoint();
@@ -76,6 +77,49 @@ protected:
              feeder::ConfirmPrinted{RecordNumber{210}, {}}, settle, feeder::End{}},
             issue);
     }
+    /// The job to its end, and into the next one.
+    void live_with_a_follower() {
+        feeder::Settle earlier;
+        earlier.earlier_run = true;
+        earlier.verdict.printed = closed(131, 200);
+        feeder::BeginRun follower;
+        follower.follower = true;
+        feeder::Settle settle;
+        settle.verdict = {closed(2011, 2020), {}, closed(2021, 2400), feeder::Basis::mail_status};
+        run({earlier, feeder::BeginRun{}, feeder::AskIntent{RecordNumber{2000}},
+             feeder::ConfirmPrinted{RecordNumber{1900}, {}}, OfferFollower{next_, closed(1, records_of_job)}, follower,
+             feeder::AskIntent{RecordNumber{2400}}, feeder::ConfirmPrinted{RecordNumber{2010}, {}}, settle,
+             feeder::End{}},
+            issue);
+    }
+    void settle_two_jobs() {
+        feeder::BeginRun follower;
+        follower.follower = true;
+        feeder::Settle settle;
+        settle.verdict = {closed(1901, 2020), {}, closed(2021, 2400), feeder::Basis::mail_status};
+        run({feeder::AdoptRun{RecordNumber{200}, RecordNumber{256}, {}}, feeder::AskIntent{RecordNumber{2000}},
+             feeder::ConfirmPrinted{RecordNumber{1900}, {}}, OfferFollower{next_, closed(1, records_of_job)}, follower,
+             feeder::AskIntent{RecordNumber{2400}}, settle, feeder::End{}},
+            issue);
+    }
+    /// A verdict that is the first to look into the ledger.
+    void settle_without_looking() {
+        run({feeder::AdoptRun{RecordNumber{130}, RecordNumber{256}, {}}, feeder::Settle{}}, issue);
+    }
+    /// Its rows wait when the follower is to begin.
+    void begin_a_follower_with_rows_waiting() {
+        feeder::BeginRun follower;
+        follower.follower = true;
+        StoreWork work{*spool_, LedgerKeeper{*spool_, job_, wanted, "tcp://10.0.0.5:3000", issue}};
+        work.take(feeder::AdoptRun{RecordNumber{200}, RecordNumber{256}, {}});
+        work.take(OfferFollower{next_, closed(1, records_of_job)});
+        work.take(feeder::ConfirmPrinted{RecordNumber{210}, {}});
+        work.take(follower);
+        for (const StoreReply& reply : work.take_replies()) {
+            told += std::holds_alternative<StorageFailed>(reply) ? 1 : 0;
+        }
+        failure = work.failure();
+    }
     void look_for_what_is_open() {
         if (const auto found = find_open_issue(*spool_, job_); !found) {
             failure = found.error().message;
@@ -88,7 +132,7 @@ protected:
     void settle_with_rows_waiting() { wait_with(feeder::Settle{}); }
     void end_with_rows_waiting() { wait_with(feeder::End{}); }
     void wait_with(const StoreRequest& last) {
-        StoreWork work{*spool_, job_, LedgerKeeper{*spool_, job_, wanted, "tcp://10.0.0.5:3000", issue}};
+        StoreWork work{*spool_, LedgerKeeper{*spool_, job_, wanted, "tcp://10.0.0.5:3000", issue}};
         work.take(feeder::AdoptRun{RecordNumber{200}, RecordNumber{256}, {}});
         work.take(feeder::AskIntent{RecordNumber{800}});
         work.take(last);
@@ -123,8 +167,12 @@ protected:
             open_spool(disk.name());
             ASSERT_TRUE(spool_->verify_ledger()) << "fault " << k;
             const auto state = spool_->ledger_state(job_).value();
-            for (std::uint32_t number = 1; number <= durable.value(); ++number) {
-                ASSERT_NE(state.state_of(RecordNumber{number}), RecordState::fresh) << "fault " << k;
+            const auto state_of_next = spool_->ledger_state(next_).value(); // at the places behind
+            for (std::uint32_t place = 1; place <= durable.value(); ++place) {
+                const auto known = place <= records_of_job
+                                       ? state.state_of(RecordNumber{place})
+                                       : state_of_next.state_of(RecordNumber{place - records_of_job});
+                ASSERT_NE(known, RecordState::fresh) << "fault " << k;
             }
         }
         EXPECT_GT(k, 0U);
@@ -150,18 +198,24 @@ protected:
     RecordNumber durable;
     std::string failure;
     int told = 0;
+    spool::JobId next_{};
 };
 
 TEST_F(StoreWorkFaults, shouldTellEveryStatementThatFails) {
     fail_each_statement([this] { live_with_new_run(); });
     fail_each_statement([this] { live_with_adopted_run(); });
+    fail_each_statement([this] { live_with_a_follower(); });
+    fail_each_statement([this] { settle_two_jobs(); });
+    fail_each_statement([this] { begin_a_follower_with_rows_waiting(); });
     fail_each_statement([this] { look_for_what_is_open(); });
     fail_each_statement([this] { begin_without_looking(); });
+    fail_each_statement([this] { settle_without_looking(); });
 }
 
 TEST_F(StoreWorkFaults, shouldTellEveryReadThatFails) {
     fail_each_call([this] { live_with_new_run(); }, DiskCall::read);
     fail_each_call([this] { live_with_adopted_run(); }, DiskCall::read);
+    fail_each_call([this] { live_with_a_follower(); }, DiskCall::read);
     fail_each_call([this] { look_for_what_is_open(); }, DiskCall::read);
     fail_each_call([this] { begin_without_looking(); }, DiskCall::read);
 }
@@ -183,7 +237,7 @@ TEST_F(StoreWorkFaults, shouldTellThatTheLedgerCannotBeReadAtTheEnd) {
         others.push_back(import_job(1, 1));
     }
     job_ = import_job();
-    StoreWork work{*spool_, job_, LedgerKeeper{*spool_, job_, wanted, "tcp://10.0.0.5:3000", std::nullopt}};
+    StoreWork work{*spool_, LedgerKeeper{*spool_, job_, wanted, "tcp://10.0.0.5:3000", std::nullopt}};
     work.take(feeder::BeginRun{});
     ASSERT_EQ(work.take_replies().size(), 1U);
     for (const spool::JobId other : others) {

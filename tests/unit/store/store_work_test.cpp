@@ -17,9 +17,8 @@ using testing::IsEmpty;
 class StoreWorkTest : public SpoolJobTest {
 protected:
     StoreWork work(RecordRange wanted = closed(1, records_of_job)) {
-        return StoreWork{
-            *spool_, job_,
-            LedgerKeeper{*spool_, job_, wanted, "tcp://10.0.0.5:3000", find_open_issue(*spool_, job_).value()}};
+        return StoreWork{*spool_, LedgerKeeper{*spool_, job_, wanted, "tcp://10.0.0.5:3000",
+                                               find_open_issue(*spool_, job_).value()}};
     }
     template <typename Reply>
     static const Reply& only(const std::vector<StoreReply>& replies) {

@@ -67,7 +67,7 @@ protected:
         SpoolJobTest::TearDown();
     }
     StoreWork work() {
-        return StoreWork{*spool_, job_,
+        return StoreWork{*spool_,
                          LedgerKeeper{*spool_, job_, closed(1, 10'000), "tcp://10.0.0.5:3000",
                                       find_open_issue(*spool_, job_).value()},
                          &*supply_};
@@ -179,6 +179,13 @@ TEST_F(SupplyTest, shouldFailWhenASmallPageCannotBeRead) {
     store.read_ahead();
     only<StorageFailed>(store.take_replies());
     EXPECT_THAT(store.failure(), HasSubstr("no record 11"));
+}
+
+TEST_F(SupplyTest, shouldLetNoJobFollowOneThatIsStillImported) {
+    supply_->add(300);
+    StoreWork store = work();
+    store.take(OfferFollower{spool::JobId{77}, closed(1, 10)});
+    EXPECT_TRUE(store.take_replies().empty());
 }
 
 TEST_F(SupplyTest, shouldTellTheEndWhenItIsKnown) {
