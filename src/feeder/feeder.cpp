@@ -109,7 +109,7 @@ void Feeder::on_mail_status(const protocol::MailStatus& status, Instant now, Act
     mail_answered(now);
     answers_lost_ = 0;
     said_ = status;
-    mail_ = in_places(status);
+    mail_ = numbering_.is_plain() ? status : in_places(status);
     ++mail_reads_;
     switch (phase_) {
     case Phase::locating:

@@ -137,13 +137,16 @@ void Feeder::on_follower_begun(RecordRange places, RecordNumber number, Actions&
 /// How many records may be sent, of `most`: the one with number 0 not without another behind it. As the last in the
 /// FIFO it would be printed again and again by a printer that is stopped and started at its panel meanwhile.
 RecordCount Feeder::without_lone_zero(RecordCount most) const {
+    if (!follows()) {
+        return most;
+    }
     const RecordCount count = std::min(most, refill_.ready());
-    return follows() && refill_.sent_through() + count == boundary_.next() ? count - RecordCount{1} : most;
+    return refill_.sent_through() + count == boundary_.next() ? count - RecordCount{1} : most;
 }
 
 /// A number of the job that has lost a digit may be one of the follower: two answers in a row are believed.
 bool Feeder::is_first_behind_boundary() {
-    const bool behind = follows() && mail_.last_printed > boundary_;
+    const bool behind = mail_.last_printed > boundary_;
     return !std::exchange(behind_boundary_, behind) && behind;
 }
 

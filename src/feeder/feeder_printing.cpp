@@ -114,7 +114,8 @@ Feeder::Report Feeder::judge_report() {
     const std::uint64_t held = mail_.last_printed.value() + waiting;
     const std::uint64_t sent = refill_.sent_through().value() + (marker_sent_ ? std::uint64_t{1} : 0);
     const std::uint64_t excess = held - std::min(held, sent);
-    const bool odd = excess > 0 || mail_.last_printed < refill_.printed_through() || is_first_behind_boundary();
+    const bool odd =
+        excess > 0 || mail_.last_printed < refill_.printed_through() || (follows() && is_first_behind_boundary());
     const bool repeated = odd_excess_ == excess;
     odd_excess_ = odd ? std::optional{excess} : std::nullopt;
     if (!odd || (repeated && excess <= excess_of_fill_)) {

@@ -25,6 +25,8 @@ public:
     /// From now on only records at `place` and behind it are asked for and reported.
     void forget_before(RecordNumber place);
 
+    /// The places are the numbers, and none goes out with 0.
+    [[nodiscard]] bool is_plain() const { return count_ == 1 && !parts_[0].begins_with_zero; }
     /// The record's number in its job; a place before all that is known is taken for a number.
     [[nodiscard]] RecordNumber number_of(RecordNumber place) const;
     /// The number that it goes out with.
