@@ -129,6 +129,7 @@ void Feeder::on_follower_begun(RecordRange places, RecordNumber number, Actions&
     LINEFEED_ASSERT(places.first() == refill_.range().last().next());
     follower_ = Follower::behind;
     boundary_ = refill_.range().last();
+    behind_boundary_ = false;
     numbering_.append(places.first(), number);
     refill_.extend(places.last());
     refill_now(out);

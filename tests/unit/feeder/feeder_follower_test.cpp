@@ -325,6 +325,24 @@ TEST_F(FeederFollower, shouldNotBelieveAFinishedZeroThatWasNotSeenWhileTheStopPo
     EXPECT_NE(words.find("printed none"), std::string::npos) << words;
 }
 
+TEST_F(FeederFollower, shouldNotBelieveOneAnswerThatLeapsBehindTheSecondJobEither) {
+    cross_over();
+    offer();
+    for (int answers = 0; answers < 10; ++answers) {
+        printed(115);
+    }
+    ASSERT_EQ(sent("begin"), "begin the follower's run, last printed before 20");
+    story.feeder.on_follower_begun(places(131, 150), RecordNumber{1}, story.actions);
+    story.durable(150);
+    story.supplied(150);
+    for (std::uint32_t place = 116; place <= 126; ++place) {
+        printed(place);
+    }
+    sent("");
+    printed(132);
+    EXPECT_EQ(sent("printed through"), "");
+}
+
 TEST_F(FeederFollower, shouldNotBelieveOneAnswerThatLeapsBehindTheJob) {
     send_behind();
     printed(107);
