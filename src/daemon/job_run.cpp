@@ -179,10 +179,11 @@ void JobRun::publish_places() {
     if (places.empty()) {
         return;
     }
-    const RecordNumber first = feeder.numbering().number_of(places.first());
+    const feeder::Numbering& numbering = feeder.numbering();
+    const RecordNumber first = numbering.number_of(places.first());
     const auto through = [&](RecordNumber place) {
-        const RecordCount count = std::min(place, places.last()) - places.first().previous();
-        return (first.previous() + count).value();
+        const bool none = place < places.first();
+        return (none ? first.previous() : numbering.number_of(std::min(place, places.last()))).value();
     };
     const feeder::Refill& refill = feeder.refill();
     const std::uint32_t version = places_version_.load(std::memory_order_relaxed);

@@ -25,24 +25,24 @@ Result<std::vector<spool::JobId>> others_at(spool::Spool& spool, spool::JobId jo
     return others;
 }
 
-struct OpenJob {
+struct OtherJob {
     spool::Job job;
     store::OpenIssue open;
 };
 
 /// Absent: nothing of it is open any more.
-Result<std::optional<OpenJob>> open_job(spool::Spool& spool, spool::JobId id) {
+Result<std::optional<OtherJob>> open_records_of(spool::Spool& spool, spool::JobId id) {
     auto open = store::find_open_issue(spool, id);
     auto job = spool.job(id);
     if (!open || !job) {
         return open ? job.error() : open.error();
     }
-    return *open && *job ? std::optional{OpenJob{std::move(**job), std::move(**open)}} : std::nullopt;
+    return *open && *job ? std::optional{OtherJob{std::move(**job), std::move(**open)}} : std::nullopt;
 }
 
-Result<std::optional<OpenJob>> find_open_job(RunThreads threads, spool::JobId id) {
-    Result<std::optional<OpenJob>> found{std::optional<OpenJob>{}};
-    threads.store.call([&](spool::Spool& spool) { found = open_job(spool, id); });
+Result<std::optional<OtherJob>> find_open_records_of(RunThreads threads, spool::JobId id) {
+    Result<std::optional<OtherJob>> found{std::optional<OtherJob>{}};
+    threads.store.call([&](spool::Spool& spool) { found = open_records_of(spool, id); });
     return found;
 }
 
@@ -61,7 +61,7 @@ Result<std::optional<Hindrance>> settle_other_jobs(RunThreads threads, spool::Sp
         return others.error();
     }
     for (const spool::JobId id : *others) {
-        const auto other = find_open_job(threads, id);
+        const auto other = find_open_records_of(threads, id);
         if (!other) {
             return other.error();
         }
@@ -72,7 +72,7 @@ Result<std::optional<Hindrance>> settle_other_jobs(RunThreads threads, spool::Sp
         run.start();
         watch(run, id);
         run.join();
-        const auto left = find_open_job(threads, id);
+        const auto left = find_open_records_of(threads, id);
         if (!left) {
             return left.error();
         }

@@ -117,18 +117,20 @@ private:
     void grant(const feeder::BeginRun& begin);
     void adopt(const feeder::AdoptRun& adopted);
     void go_on(const LedgerKeeper::Grant& grant, RecordNumber read_behind);
-    void offer(const OfferFollower& follower);
-    [[nodiscard]] bool may_be_followed(const Part& part, RecordRange records) const;
-    void begin_follower(const feeder::BeginRun& begin);
-    void extend_intents();
-    void confirm(RecordNumber through, const protocol::MailStatus& evidence);
-    void leave_printed_job();
     void end(const feeder::End& end);
     [[nodiscard]] RecordNumber intent_through() const;
     void report_durable();
     void fail(Failure failure);
     void take_supply();
     [[nodiscard]] RecordRange readable(const Part& part) const;
+
+    // store_work_chain.cpp: two jobs
+    void offer(const OfferFollower& follower);
+    [[nodiscard]] bool may_be_followed(const Part& part, RecordRange records) const;
+    void begin_follower(const feeder::BeginRun& begin);
+    void extend_intents();
+    void confirm(RecordNumber through, const protocol::MailStatus& evidence);
+    void leave_printed_job();
 
     spool::Spool& spool_;
     std::deque<Part> parts_; ///< one, or the one that is printed and its follower

@@ -183,12 +183,7 @@ TEST(FeederFilling, shouldNotStartWhenTheStopPointHasVanishedUnderTheFill) {
 /// Without a stop point only the entries tell that a stop may have thrown a part of the fill away.
 TEST(FeederFilling, shouldAskTheCounterWhenEntriesAreMissingAndNoStopPointStands) {
     Story story;
-    story.arm_to_grant();
-    story.granted();
-    story.sm(0, 77, 0);
-    story.sm(0, 77, 0);
-    story.sm(0, 77, 0);
-    story.supplied(Story::last);
+    story.fill_without_stop_point();
     story.sm(2, 77, 0);
     story.sm(2, 77, 0);
     EXPECT_NE(story.take().find("another number of FIFO entries"), std::string::npos);

@@ -154,12 +154,7 @@ TEST_F(FeederFollower, shouldNotFollowWithOneRecord) {
 }
 
 TEST_F(FeederFollower, shouldNotFollowWhereTheStopPointIsNotKept) {
-    story.arm_to_grant();
-    story.granted();
-    story.sm(0, 77, 0);
-    story.sm(0, 77, 0);
-    story.sm(0, 77, 0);
-    story.supplied(Story::last);
+    story.fill_without_stop_point();
     story.sm(7, 77, 0);
     story.wait(FeederSettings{}.fill_lead);
     story.rs(State::printing);

@@ -473,12 +473,7 @@ TEST(FeederStopPoint, shouldStopWhenSomebodyElseSetsTheStopPoint) {
 
 TEST(FeederStopPoint, shouldBelieveTheNumberWhereTheCounterDoesNotMove) {
     Story story;
-    story.arm_to_grant();
-    story.granted();
-    story.sm(0, 77, 0);
-    story.sm(0, 77, 0);
-    story.sm(0, 77, 0);
-    story.supplied(Story::last);
+    story.fill_without_stop_point();
     story.sm(3, 77, 0);
     story.wait(FeederSettings{}.fill_lead);
     story.rs(Story::State::printing);

@@ -151,6 +151,15 @@ public:
         wait(FeederSettings{}.fill_lead);
         actions.clear();
     }
+    /// From the grant to the first fill, on a printer that keeps no stop point.
+    void fill_without_stop_point() {
+        arm_to_grant();
+        granted();
+        for (int answers = 0; answers < 3; ++answers) {
+            sm(0, 77, 0);
+        }
+        supplied(last);
+    }
     /// Up to the first answer while printing.
     void print() {
         arm();
